@@ -1,0 +1,292 @@
+//! The scene format (version 1) as types. Defaults stand here and nowhere else.
+
+use std::ops::Range;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// A value with the place where it was written: byte offset and length in [`SceneDesc::source`].
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Placed<T> {
+    /// The value.
+    pub value: T,
+    /// Byte offset.
+    pub at: usize,
+    /// Length in bytes.
+    pub len: usize,
+}
+
+/// A whole scene file, checked for itself: names resolve, numbers are finite, ranges are in order.
+#[derive(Clone, Debug)]
+pub struct SceneDesc {
+    /// The file; paths in it are relative to its folder.
+    pub file: PathBuf,
+    /// Its text, for places.
+    pub source: Arc<str>,
+    /// Image and sampling settings.
+    pub render: RenderDesc,
+    /// Radiance from everywhere.
+    pub background: ColorDesc,
+    /// The camera at top level, if that is where it stands.
+    pub camera: Option<CameraDesc>,
+    /// Materials by name, in file order.
+    pub materials: Vec<NamedMaterial>,
+    /// Entities in file order.
+    pub entities: Vec<Placed<EntityDesc>>,
+    /// Frame rate and range.
+    pub animation: AnimationDesc,
+}
+
+/// `render: (..)`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RenderDesc {
+    /// Width and height in pixels. Default (512, 512).
+    pub size: (u32, u32),
+    /// Samples per pixel. Default 64.
+    pub spp: u32,
+    /// Scattering events on a path; 1 is direct light only. Default 7.
+    pub max_bounces: u32,
+    /// Pixel filter. Default `Gaussian(radius_px: 1.5)`.
+    pub filter: FilterDesc,
+}
+
+/// Pixel filter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FilterDesc {
+    /// One pixel wide.
+    Box,
+    /// Cut off at the radius, σ = radius / 3.
+    Gaussian {
+        /// In pixels.
+        radius_px: f64,
+    },
+}
+
+/// `camera: (..)` at top level, or on an entity (then without `pose`).
+#[derive(Clone, Debug, PartialEq)]
+pub struct CameraDesc {
+    /// Where it stands, only at top level.
+    pub pose: Option<CameraPose>,
+    /// Vertical field of view in degrees. Default 60.
+    pub vfov_deg: f64,
+    /// Radius of the aperture in scene units; 0 is a pinhole. Default 0.
+    pub aperture_radius: f64,
+    /// Distance of the focal plane along the view axis. Default: the distance to `look_at`, else 1.
+    pub focus_distance: f64,
+}
+
+/// `at`, `look_at`, `up` of a camera at top level.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraPose {
+    /// The eye.
+    pub at: [f64; 3],
+    /// A point on the view axis.
+    pub look_at: [f64; 3],
+    /// What is up in the image. Default (0, 1, 0).
+    pub up: [f64; 3],
+}
+
+/// A colour: it always says its space.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ColorDesc {
+    /// Linear R, G, B (Rec. 709 primaries). `Srgb("#c0ffee")` is decoded to this by the reader.
+    Linear([f64; 3]),
+    /// An image file, sRGB; also what `Texture("x.png")` is read as, with default wrap and filter.
+    Image {
+        /// Relative to the scene's folder, as written.
+        path: Placed<String>,
+        /// Default Repeat.
+        wrap: WrapDesc,
+        /// Default Bilinear.
+        filter: TextureFilterDesc,
+    },
+    /// `Hdr("sky.hdr")`, background only; not yet rendered.
+    Hdr(Placed<String>),
+}
+
+/// Wrap mode of an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum WrapDesc {
+    /// Tiles.
+    #[default]
+    Repeat,
+    /// Tiles, every second one mirrored.
+    Mirror,
+    /// The border goes on.
+    Clamp,
+}
+
+/// Filter of an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum TextureFilterDesc {
+    /// Four nearest texels.
+    #[default]
+    Bilinear,
+    /// Nearest texel.
+    Nearest,
+}
+
+/// An entry of `materials`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedMaterial {
+    /// Its key.
+    pub name: String,
+    /// What it is.
+    pub material: MaterialDesc,
+    /// Place of the whole entry's value.
+    pub at: usize,
+    /// Its length in bytes.
+    pub len: usize,
+}
+
+/// A material.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MaterialDesc {
+    /// Two-sided Lambert. Default colour Linear(0.8, 0.8, 0.8).
+    Diffuse {
+        /// Albedo.
+        color: ColorDesc,
+    },
+    /// Perfect mirror. Default colour Linear(1, 1, 1).
+    Mirror {
+        /// Reflectance.
+        color: ColorDesc,
+    },
+    /// Smooth dielectric. Default ior 1.5, colour Linear(1, 1, 1).
+    Glass {
+        /// Index of refraction, inside over outside at this surface; above 0.
+        ior: f64,
+        /// Multiplies each transmission, never reflection.
+        color: ColorDesc,
+    },
+    /// Smooth coat over a diffuse base. Default colour Linear(0.8, 0.8, 0.8), ior 1.5.
+    Plastic {
+        /// Albedo of the base.
+        color: ColorDesc,
+        /// Of the coat.
+        ior: f64,
+    },
+    /// F = c + (1 − c)(1 − cos θ)⁵. Default colour Linear(0.8, 0.8, 0.8), roughness 0 (anything above: not yet).
+    Metal {
+        /// Reflectance at normal incidence.
+        color: ColorDesc,
+        /// GGX α = roughness².
+        roughness: f64,
+    },
+}
+
+/// An entity: a struct of optional components.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct EntityDesc {
+    /// Unique where given.
+    pub name: Option<String>,
+    /// Index into [`SceneDesc::entities`] of the entity that `parent` names.
+    pub parent: Option<usize>,
+    /// What it looks like.
+    pub shape: Option<ShapeDesc>,
+    /// Index into [`SceneDesc::materials`] of the material that `material` names.
+    pub material: Option<usize>,
+    /// T · R · S in the parent's frame.
+    pub transform: TransformDesc,
+    /// Turning.
+    pub spin: Option<SpinDesc>,
+    /// Emitted radiance in W·sr⁻¹·m⁻².
+    pub emissive: Option<[f64; 3]>,
+    /// Normals of a mesh; default `File`, and `Smooth(angle_deg: 60)` where the file has none.
+    pub normals: Option<NormalsDesc>,
+    /// A camera at this entity, looking along its −Z.
+    pub camera: Option<CameraDesc>,
+}
+
+/// A shape.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ShapeDesc {
+    /// Around the entity's origin.
+    Sphere {
+        /// Above 0.
+        radius: f64,
+        /// Normals inward. Default false.
+        inverted: bool,
+    },
+    /// An OBJ file.
+    Mesh(Placed<String>),
+}
+
+/// `transform: (translate, rotate, scale)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TransformDesc {
+    /// Default 0.
+    pub translate: [f64; 3],
+    /// Default none.
+    pub rotate: RotateDesc,
+    /// A number or a triple; default 1.
+    pub scale: [f64; 3],
+}
+
+impl Default for TransformDesc {
+    fn default() -> Self {
+        TransformDesc {
+            translate: [0.0; 3],
+            rotate: RotateDesc::Euler([0.0; 3]),
+            scale: [1.0; 3],
+        }
+    }
+}
+
+/// A rotation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RotateDesc {
+    /// Degrees about x, y, z; R = Rz · Ry · Rx.
+    Euler([f64; 3]),
+    /// Degrees about an axis (not of length 0).
+    AxisAngle {
+        /// Any length above 0.
+        axis: [f64; 3],
+        /// Degrees, counter-clockwise seen against the axis.
+        deg: f64,
+    },
+    /// x, y, z, w; normalised by the world (not of length 0).
+    Quat([f64; 4]),
+}
+
+/// `spin: (axis, deg_per_s, pivot)`, in the parent's frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpinDesc {
+    /// Any length above 0.
+    pub axis: [f64; 3],
+    /// Degrees per second.
+    pub deg_per_s: f64,
+    /// A point of the parent's frame; default the entity's `translate`.
+    pub pivot: Option<[f64; 3]>,
+}
+
+/// Normals of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NormalsDesc {
+    /// As in the file.
+    File,
+    /// One per triangle.
+    Flat,
+    /// Averaged over faces that meet at less than the angle. Default 60.
+    Smooth {
+        /// Degrees.
+        angle_deg: f64,
+    },
+}
+
+/// `animation: (fps, frames)`. Default 24 frames a second, frames 0..1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AnimationDesc {
+    /// Frames a second; frame k is at k / fps seconds.
+    pub fps: f64,
+    /// Half-open.
+    pub frames: Range<u32>,
+}
+
+impl Default for AnimationDesc {
+    fn default() -> Self {
+        AnimationDesc {
+            fps: 24.0,
+            frames: 0..1,
+        }
+    }
+}
