@@ -1,1 +1,34 @@
-//! film
+//! The film: the last stage. Sums of samples enter, image files leave.
+//!
+//! [`Film`] keeps f64 sums and counts per pixel; [`Film::radiance`] and its kin divide them, once, into linear f32.
+//! A PNG is tone mapped here and nowhere else ([`srgb`]); an EXR stays linear, for measuring. Equal films with equal
+//! [`Metadata`] are equal files: no time, host or path is written, and the bytes depend on neither machine nor threads.
+//!
+//! Deliberately absent: scenes, rays, tiles in flight, the choice of what to render, any clamp or filter of radiance
+//! before the 8-bit picture.
+
+pub mod aov;
+mod exr;
+mod metadata;
+mod planes;
+mod png;
+mod resolve;
+pub mod srgb;
+mod write;
+
+pub use self::aov::Aov;
+pub use self::exr::encode_exr;
+pub use self::metadata::Metadata;
+pub use self::planes::{Film, Planes, Window};
+pub use self::png::encode_png;
+pub use self::write::{check_folder, write_file};
+
+/// An image could not be encoded: its size is beyond what the format holds.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot encode the {format} image: {reason}")]
+pub struct EncodeError {
+    /// `PNG` or `EXR`.
+    pub format: &'static str,
+    /// What the encoder says.
+    pub reason: String,
+}

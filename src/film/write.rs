@@ -1,0 +1,90 @@
+//! Files appear whole or not at all.
+
+use std::ffi::OsString;
+use std::fs::{self, File};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// Writes `bytes` to a temporary name in the folder of `path`, then renames it. On an error the temporary is removed
+/// and what stood at `path` before still does.
+///
+/// # Errors
+/// Any of the file system.
+pub fn write_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let temporary = temporary_name(path)?;
+    let written = write_all(&temporary, bytes).and_then(|()| fs::rename(&temporary, path));
+    if written.is_err() {
+        // The first error is the one to tell; the temporary may not even exist.
+        let _ = fs::remove_file(&temporary);
+    }
+    written
+}
+
+/// Whether a file could be written at `path`: its folder exists and takes a file, and it is no folder itself. Asked
+/// before rendering, so that minutes of work do not end in an error that was there from the start.
+///
+/// # Errors
+/// The one that [`write_file`] would meet.
+pub fn check_folder(path: &Path) -> io::Result<()> {
+    if path.is_dir() {
+        return Err(io::Error::new(
+            io::ErrorKind::IsADirectory,
+            "it is a folder",
+        ));
+    }
+    let probe = temporary_name(path)?;
+    File::create_new(&probe)?;
+    fs::remove_file(&probe)
+}
+
+fn write_all(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let mut file = File::create(path)?;
+    file.write_all(bytes)?;
+    file.sync_all()
+}
+
+/// `.NAME.PID.partial` beside `path`: hidden, and another process's differs.
+fn temporary_name(path: &Path) -> io::Result<PathBuf> {
+    let name = path
+        .file_name()
+        .ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "it names no file"))?;
+    let mut temporary = OsString::from(".");
+    temporary.push(name);
+    temporary.push(format!(".{}.partial", std::process::id()));
+    Ok(path.with_file_name(temporary))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn folder(name: &str) -> PathBuf {
+        let folder = std::env::temp_dir().join(format!("luxel-{name}-{}", std::process::id()));
+        fs::create_dir_all(&folder).expect("a temporary folder");
+        folder
+    }
+
+    #[test]
+    fn replaces_the_file_and_leaves_no_other() {
+        let folder = folder("write");
+        let path = folder.join("a.png");
+        check_folder(&path).expect("writable");
+        write_file(&path, b"old").expect("writable");
+        write_file(&path, b"new").expect("writable");
+        assert_eq!(fs::read(&path).expect("there"), b"new");
+        assert_eq!(fs::read_dir(&folder).expect("there").count(), 1);
+        fs::remove_dir_all(&folder).expect("ours");
+    }
+
+    #[test]
+    fn a_failed_rename_leaves_nothing() {
+        let folder = folder("fail");
+        let path = folder.join("taken");
+        fs::create_dir(&path).expect("ours");
+        assert!(check_folder(&path).is_err());
+        assert!(write_file(&path, b"x").is_err());
+        assert_eq!(fs::read_dir(&folder).expect("there").count(), 1);
+        assert!(check_folder(&folder.join("no/such/a.png")).is_err());
+        fs::remove_dir_all(&folder).expect("ours");
+    }
+}
