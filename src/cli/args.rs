@@ -1,0 +1,292 @@
+//! The arguments. Every number is checked here, with its range in the message.
+
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
+use luxel::film::Aov;
+use luxel::trace::isa::{Isa, Level};
+use luxel::trace::{Fresnel, Sampler};
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// Most pixels of an image: 8 GB of sums.
+const MAX_PIXELS: u64 = 1 << 27;
+/// Longest side of an image.
+const MAX_SIDE: u32 = 1 << 15;
+
+/// A path tracer for scenes that are lists of entities: author in RON, render, measure.
+#[derive(Debug, Parser)]
+#[command(
+    name = "luxel",
+    version,
+    arg_required_else_help = true,
+    after_help = "\
+Examples:
+  luxel render scenes/hero.ron                     writes hero.png here
+  luxel render room.ron -o room.exr --aov normal,depth
+  luxel check room.ron                             every error at once
+  luxel explain room.ron                           what the scene makes luxel do
+
+Exit codes: 0 done, 2 usage, 65 bad scene, 66 missing file, 70 bug, 74 i/o, 130 stopped"
+)]
+pub(crate) struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+/// The subcommands.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Render one frame of a scene to a PNG or an EXR file
+    Render(Box<RenderArgs>),
+    /// List every error and warning of a scene and of the files that it names
+    Check(InspectArgs),
+    /// Show what a scene requires: stages, buffers, bytes, tree, defaults in force
+    Explain(InspectArgs),
+}
+
+/// `luxel render`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  luxel render room.ron                            room.png, as the scene says
+  luxel render room.ron -o room.exr --aov albedo,normal,depth
+  luxel render room.ron --spp 1024 --time 30s      whichever comes first
+  luxel render room.ron --size 128x128 --spp 4     a quick look
+  luxel render room.ron -o - | viewer              PNG on stdout
+
+Ctrl-C writes what there is to NAME.partial.png (or .exr) and exits with 130.
+With equal samples the picture is the same to the bit for any --threads, --tile, --isa and --accel.")]
+pub(crate) struct RenderArgs {
+    /// The scene file (RON)
+    pub(crate) scene: PathBuf,
+    /// Where to write: .png or .exr by its suffix, - is PNG on stdout [default: SCENE.png in this folder]
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Samples per pixel [default: the scene's]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..=1 << 24))]
+    pub(crate) spp: Option<u32>,
+    /// Stop after this time, if that comes before --spp: 30s, 2m, 500ms
+    #[arg(long, value_name = "TIME", value_parser = parse_time)]
+    pub(crate) time: Option<Duration>,
+    /// Width and height in pixels [default: the scene's]
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    pub(crate) size: Option<(u32, u32)>,
+    /// Frame number; frame K shows the scene at K / fps seconds
+    #[arg(long, value_name = "K", default_value_t = 0)]
+    pub(crate) frame: u32,
+    /// Scattering events on a path; 1 is direct light only [default: the scene's]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(0..=65535))]
+    pub(crate) bounces: Option<u32>,
+    /// Exposure of a PNG in stops: +1 is twice as bright. An EXR stays linear
+    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true, value_parser = parse_exposure)]
+    pub(crate) exposure: f64,
+    /// Another seed is another picture of the same scene, with other noise
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) seed: u64,
+    /// Where random numbers come from
+    #[arg(long, value_enum, default_value_t = SamplerArg::Sobol)]
+    pub(crate) sampler: SamplerArg,
+    /// Worker threads [default: all that the machine offers]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+    /// Instruction set: scalar, sse2, avx2, avx512 [default: the best that this machine has]
+    #[arg(long, value_name = "ISA", value_parser = parse_isa)]
+    pub(crate) isa: Option<Isa>,
+    /// How rays find what they hit: test everything, a box per mesh, or the tree
+    #[arg(long, value_enum, default_value_t = AccelArg::Bvh)]
+    pub(crate) accel: AccelArg,
+    /// Side of a tile in pixels
+    #[arg(long, value_name = "N", default_value_t = luxel::render::Settings::DEFAULT_TILE, value_parser = value_parser!(u32).range(1..=4096))]
+    pub(crate) tile: u32,
+    /// More images in the EXR file, separated by commas
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = aov_parser())]
+    pub(crate) aov: Vec<Aov>,
+    /// Sample lights directly (next-event estimation)
+    #[arg(long, value_enum, default_value_t = Switch::On)]
+    pub(crate) nee: Switch,
+    /// Weigh light and material samples against each other (multiple importance sampling)
+    #[arg(long, value_enum, default_value_t = Switch::On)]
+    pub(crate) mis: Switch,
+    /// End dim paths at random, without bias
+    #[arg(long, value_enum, default_value_t = Switch::On)]
+    pub(crate) roulette: Switch,
+    /// Reflectance of glass and plastic
+    #[arg(long, value_enum, default_value_t = FresnelArg::Exact)]
+    pub(crate) fresnel: FresnelArg,
+    /// Write what the render cost as JSON
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) stats: Option<PathBuf>,
+}
+
+/// `luxel check` and `luxel explain`.
+#[derive(Debug, Args)]
+pub(crate) struct InspectArgs {
+    /// The scene file (RON)
+    pub(crate) scene: PathBuf,
+    /// Print JSON on stdout
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// `on` or `off`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Switch {
+    /// On.
+    On,
+    /// Off.
+    Off,
+}
+
+impl Switch {
+    /// Whether it is on.
+    pub(crate) fn is_on(self) -> bool {
+        self == Switch::On
+    }
+}
+
+/// `--sampler`.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum SamplerArg {
+    /// A hash per sample and dimension
+    Independent,
+    /// Owen-scrambled Sobol points
+    Sobol,
+}
+
+impl From<SamplerArg> for Sampler {
+    fn from(arg: SamplerArg) -> Sampler {
+        match arg {
+            SamplerArg::Independent => Sampler::Independent,
+            SamplerArg::Sobol => Sampler::Sobol,
+        }
+    }
+}
+
+/// `--fresnel`.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum FresnelArg {
+    /// Fresnel's equations
+    Exact,
+    /// Schlick's approximation
+    Schlick,
+    /// Nothing is reflected, except totally
+    Off,
+}
+
+impl From<FresnelArg> for Fresnel {
+    fn from(arg: FresnelArg) -> Fresnel {
+        match arg {
+            FresnelArg::Exact => Fresnel::Exact,
+            FresnelArg::Schlick => Fresnel::Schlick,
+            FresnelArg::Off => Fresnel::Off,
+        }
+    }
+}
+
+/// `--accel`.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum AccelArg {
+    /// Every ray against every primitive
+    Brute,
+    /// A bounding box around each mesh
+    Box,
+    /// The bounding volume hierarchy
+    Bvh,
+}
+
+fn aov_parser() -> impl TypedValueParser<Value = Aov> {
+    PossibleValuesParser::new(Aov::ALL.map(Aov::name)).map(|name| {
+        let known = Aov::ALL.into_iter().find(|aov| aov.name() == name);
+        known.unwrap_or(Aov::Samples)
+    })
+}
+
+fn parse_size(text: &str) -> Result<(u32, u32), String> {
+    let side = |s: &str| {
+        let side = s.parse::<u32>().ok();
+        side.filter(|side| (1..=MAX_SIDE).contains(side))
+    };
+    let sides = text.split_once(['x', 'X']);
+    let Some((width, height)) = sides.and_then(|(w, h)| Some((side(w)?, side(h)?))) else {
+        return Err(format!(
+            "write width x height, each 1 to {MAX_SIDE}, e.g. 640x360"
+        ));
+    };
+    if u64::from(width) * u64::from(height) > MAX_PIXELS {
+        return Err(format!("at most {MAX_PIXELS} pixels fit; make a side smaller"));
+    }
+    Ok((width, height))
+}
+
+fn parse_time(text: &str) -> Result<Duration, String> {
+    const REMEDY: &str = "write a number above 0 with its unit, e.g. 30s, 2m, 500ms, 1.5h";
+    // Longer than any render, and still a valid deadline.
+    const MAX_SECONDS: f64 = 366.0 * 86400.0;
+    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let seconds_per_unit = match &text[digits.len()..] {
+        "ms" => 1e-3,
+        "s" => 1.0,
+        "m" | "min" => 60.0,
+        "h" => 3600.0,
+        _ => return Err(REMEDY.to_owned()),
+    };
+    let number: f64 = digits.parse().map_err(|_| REMEDY.to_owned())?;
+    let seconds = number * seconds_per_unit;
+    if !(seconds > 0.0 && seconds <= MAX_SECONDS) {
+        return Err(format!("{REMEDY}; at most a year"));
+    }
+    Ok(Duration::from_secs_f64(seconds))
+}
+
+fn parse_exposure(text: &str) -> Result<f64, String> {
+    let stops: Option<f64> = text.parse().ok();
+    stops
+        .filter(|stops| (-64.0..=64.0).contains(stops))
+        .ok_or_else(|| "write a number of stops from -64 to 64, e.g. -1.5".to_owned())
+}
+
+fn parse_isa(text: &str) -> Result<Isa, String> {
+    let level: Level = text.parse()?;
+    Isa::available(level).ok_or_else(|| {
+        let have: Vec<String> = Isa::all().map(|isa| isa.level().to_string()).collect();
+        format!("this machine has no {level}; it has {}", have.join(", "))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_definition_is_sound() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn times_have_units() {
+        assert_eq!(parse_time("500ms"), Ok(Duration::from_millis(500)));
+        assert_eq!(parse_time("2m"), Ok(Duration::from_secs(120)));
+        assert_eq!(parse_time("1.5h"), Ok(Duration::from_secs(5400)));
+        for bad in ["", "30", "s", "-1s", "0s", "NaNs", "infs", "1e99h", "3 s x", "5d", "1e400s"] {
+            assert!(parse_time(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn sizes_have_two_sides() {
+        assert_eq!(parse_size("640x360"), Ok((640, 360)));
+        for bad in ["", "640", "0x5", "5x0", "-1x5", "640x", "99999x1", "32768x32768", "1x1x1"] {
+            assert!(parse_size(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn exposures_are_stops() {
+        assert_eq!(parse_exposure("-1.5"), Ok(-1.5));
+        for bad in ["", "bright", "NaN", "inf", "65"] {
+            assert!(parse_exposure(bad).is_err(), "{bad}");
+        }
+    }
+}

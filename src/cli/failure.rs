@@ -1,0 +1,109 @@
+//! Why a command ended without its result, and the exit code that says so to scripts.
+
+use super::{diagnostics, say};
+use luxel::diag::Diagnostic;
+use std::fmt;
+use std::path::Path;
+
+/// Exit codes, after BSD's `sysexits.h`.
+pub(crate) mod code {
+    /// Done.
+    pub(crate) const DONE: u8 = 0;
+    /// The command line is wrong.
+    pub(crate) const USAGE: u8 = 2;
+    /// The scene, or a file that it names, is wrong or missing.
+    pub(crate) const SCENE: u8 = 65;
+    /// A file named on the command line is missing.
+    pub(crate) const NO_INPUT: u8 = 66;
+    /// A bug in luxel.
+    pub(crate) const BUG: u8 = 70;
+    /// Input or output failed.
+    pub(crate) const IO: u8 = 74;
+    /// Stopped by a signal.
+    pub(crate) const STOPPED: u8 = 130;
+}
+
+/// What went wrong.
+#[derive(Debug)]
+pub(crate) struct Failure {
+    /// The exit code.
+    pub(crate) code: u8,
+    what: What,
+}
+
+#[derive(Debug)]
+enum What {
+    /// Message, and what to do about it.
+    Message(String, Option<String>),
+    /// Everything that is wrong with the scene.
+    Diagnostics(Vec<Diagnostic>),
+    /// It has been said already.
+    Said,
+}
+
+impl Failure {
+    /// The command line cannot be obeyed.
+    pub(crate) fn usage(message: impl fmt::Display, hint: &str) -> Failure {
+        Failure {
+            code: code::USAGE,
+            what: What::Message(message.to_string(), Some(hint.to_owned())),
+        }
+    }
+
+    /// A file named on the command line cannot be read.
+    pub(crate) fn no_input(path: &Path, cause: &std::io::Error) -> Failure {
+        Failure {
+            code: code::NO_INPUT,
+            what: What::Message(
+                format!("cannot read \"{}\": {cause}", path.display()),
+                None,
+            ),
+        }
+    }
+
+    /// The scene is wrong.
+    pub(crate) fn scene(diagnostics: Vec<Diagnostic>) -> Failure {
+        Failure {
+            code: code::SCENE,
+            what: What::Diagnostics(diagnostics),
+        }
+    }
+
+    /// Reading or writing failed.
+    pub(crate) fn io(what: impl fmt::Display, cause: &dyn fmt::Display) -> Failure {
+        Failure {
+            code: code::IO,
+            what: What::Message(format!("cannot write {what}: {cause}"), None),
+        }
+    }
+
+    /// Stopped by a signal.
+    pub(crate) fn stopped() -> Failure {
+        Failure {
+            code: code::STOPPED,
+            what: What::Said,
+        }
+    }
+
+    /// The scene is wrong, and what is wrong has been printed.
+    pub(crate) fn scene_said() -> Failure {
+        Failure {
+            code: code::SCENE,
+            what: What::Said,
+        }
+    }
+
+    /// Says it on stderr.
+    pub(crate) fn print(&self) {
+        match &self.what {
+            What::Message(message, hint) => {
+                say(&format!("error: {message}"));
+                if let Some(hint) = hint {
+                    say(&format!("  = help: {hint}"));
+                }
+            }
+            What::Diagnostics(all) => diagnostics::print(all),
+            What::Said => {}
+        }
+    }
+}

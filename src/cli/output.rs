@@ -1,0 +1,159 @@
+//! Where an image goes and in which format.
+
+use super::failure::Failure;
+use super::print_result;
+use luxel::film::{self, Aov, EncodeError, Film, Metadata};
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+
+/// File formats.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Format {
+    /// 8-bit sRGB.
+    Png,
+    /// Linear f32.
+    Exr,
+}
+
+/// A place for an image.
+#[derive(Clone, Debug)]
+pub(crate) struct Output {
+    /// `None` is stdout.
+    pub(crate) path: Option<PathBuf>,
+    /// By the suffix.
+    pub(crate) format: Format,
+}
+
+/// What an image is encoded with.
+#[derive(Clone, Debug)]
+pub(crate) struct Encoding<'a> {
+    /// 2^EV, for PNG.
+    pub(crate) gain: f64,
+    /// For EXR.
+    pub(crate) aovs: &'a [Aov],
+    /// For both.
+    pub(crate) metadata: Metadata,
+}
+
+impl Output {
+    /// The output that `-o` asks for, or `SCENE.png` in the current folder. Whatever would make writing fail later
+    /// fails here, before minutes of rendering.
+    pub(crate) fn choose(
+        asked: Option<&Path>,
+        scene: &Path,
+        aovs: &[Aov],
+    ) -> Result<Output, Failure> {
+        let output = match asked {
+            Some(path) if path == "-" => Output {
+                path: None,
+                format: Format::Png,
+            },
+            Some(path) => Output {
+                path: Some(path.to_owned()),
+                format: format_of(path)?,
+            },
+            None => Output {
+                path: Some(default_name(scene)),
+                format: Format::Png,
+            },
+        };
+        if output.format == Format::Png && !aovs.is_empty() {
+            let names: Vec<_> = aovs.iter().map(|aov| aov.name()).collect();
+            return Err(Failure::usage(
+                format!("a PNG cannot hold {}", names.join(", ")),
+                "write an EXR: -o FILE.exr",
+            ));
+        }
+        if let Some(path) = &output.path {
+            check_writable(path)?;
+        }
+        Ok(output)
+    }
+
+    /// Encodes and writes.
+    pub(crate) fn write(&self, film: &Film, encoding: &Encoding<'_>) -> Result<(), Failure> {
+        let name = self.to_string();
+        let bytes = self
+            .encode(film, encoding)
+            .map_err(|e| Failure::io(&name, &e))?;
+        match &self.path {
+            Some(path) => film::write_file(path, &bytes).map_err(|e| Failure::io(&name, &e)),
+            None => print_result(&bytes),
+        }
+    }
+
+    fn encode(&self, film: &Film, encoding: &Encoding<'_>) -> Result<Vec<u8>, EncodeError> {
+        match self.format {
+            Format::Png => film::encode_png(film, encoding.gain, &encoding.metadata),
+            Format::Exr => film::encode_exr(film, encoding.aovs, &encoding.metadata),
+        }
+    }
+
+    /// `NAME.partial.png` beside `NAME.png`; none for stdout.
+    pub(crate) fn partial(&self) -> Option<Output> {
+        let path = self.path.as_ref()?;
+        let mut name = path.file_stem()?.to_owned();
+        name.push(".partial.");
+        name.push(path.extension()?);
+        Some(Output {
+            path: Some(path.with_file_name(name)),
+            format: self.format,
+        })
+    }
+}
+
+impl std::fmt::Display for Output {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match &self.path {
+            Some(path) => write!(f, "{}", path.display()),
+            None => f.write_str("stdout"),
+        }
+    }
+}
+
+/// An output that cannot be written is an error now.
+pub(crate) fn check_writable(path: &Path) -> Result<(), Failure> {
+    film::check_folder(path).map_err(|e| Failure::io(format!("\"{}\"", path.display()), &e))
+}
+
+fn format_of(path: &Path) -> Result<Format, Failure> {
+    let suffix = path.extension().and_then(OsStr::to_str).unwrap_or("");
+    match suffix.to_ascii_lowercase().as_str() {
+        "png" => Ok(Format::Png),
+        "exr" => Ok(Format::Exr),
+        _ => Err(Failure::usage(
+            format!(
+                "the suffix of \"{}\" names no format that luxel writes",
+                path.display()
+            ),
+            "end it in .png (8-bit picture) or .exr (linear, for measuring)",
+        )),
+    }
+}
+
+fn default_name(scene: &Path) -> PathBuf {
+    let mut name = scene.file_stem().unwrap_or(OsStr::new("out")).to_owned();
+    name.push(".png");
+    PathBuf::from(name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn partial_keeps_the_suffix() {
+        let output = Output {
+            path: Some("a/b.c.exr".into()),
+            format: Format::Exr,
+        };
+        let partial = output.partial().expect("a file");
+        assert_eq!(partial.path, Some("a/b.c.partial.exr".into()));
+    }
+
+    #[test]
+    fn the_default_is_in_this_folder() {
+        let name = default_name(Path::new("scenes/deep/room.ron"));
+        assert_eq!(name, Path::new("room.png"));
+    }
+}

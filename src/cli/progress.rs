@@ -1,0 +1,121 @@
+//! A progress bar, on a terminal only.
+
+use indicatif::{ProgressBar, ProgressStyle};
+use luxel::render::Control;
+use std::io::IsTerminal;
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::sync::Arc;
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+/// Often enough to look alive, rarely enough to cost nothing.
+const REFRESH: Duration = Duration::from_millis(100);
+
+/// Draws until dropped.
+pub(crate) struct Progress {
+    running: Option<(Sender<()>, JoinHandle<()>)>,
+}
+
+impl Progress {
+    /// Starts drawing on a thread of its own, if stderr is a terminal. `limit` is what `--time` allows.
+    pub(crate) fn start(control: &Arc<Control>, limit: Option<Duration>) -> Progress {
+        if !std::io::stderr().is_terminal() {
+            return Progress { running: None };
+        }
+        let control = Arc::clone(control);
+        let (done, end) = channel::<()>();
+        let thread = std::thread::spawn(move || {
+            let bar = bar();
+            let launched = Instant::now();
+            let mut tracing_since = None;
+            while end.recv_timeout(REFRESH) == Err(RecvTimeoutError::Timeout) {
+                let (samples, total) = control.progress();
+                if total == 0 {
+                    continue;
+                }
+                // The build is over when tracing counts: its time says nothing about the samples to come.
+                let since = *tracing_since.get_or_insert_with(Instant::now);
+                bar.set_length(total);
+                bar.set_position(samples);
+                let by_samples = remaining(since.elapsed(), samples, total);
+                let by_clock = limit.map(|limit| limit.saturating_sub(launched.elapsed()));
+                bar.set_message(match by_samples.into_iter().chain(by_clock).min() {
+                    Some(left) => format!("{} left", words(left)),
+                    None => String::new(),
+                });
+            }
+            bar.finish_and_clear();
+        });
+        Progress {
+            running: Some((done, thread)),
+        }
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        if let Some((done, thread)) = self.running.take() {
+            drop(done);
+            // A drawing thread that died took only the bar with it.
+            let _ = thread.join();
+        }
+    }
+}
+
+fn bar() -> ProgressBar {
+    let bar = ProgressBar::new(0);
+    let template = "{percent:>3}% [{bar:30}] {elapsed} {msg}";
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style.progress_chars("=> "));
+    }
+    bar
+}
+
+/// Samples cost the same on average from first to last, so the rest takes as long in proportion.
+fn remaining(elapsed: Duration, samples: u64, total: u64) -> Option<Duration> {
+    let rest = total.saturating_sub(samples) as f64;
+    (samples > 0).then(|| elapsed.mul_f64(rest / samples as f64))
+}
+
+/// `3.1 s`, `2 min 05 s`, `1 h 10 min`.
+pub(crate) fn words(time: Duration) -> String {
+    let seconds = time.as_secs_f64();
+    if seconds < 0.001 {
+        return format!("{:.0} µs", seconds * 1e6);
+    }
+    if seconds < 1.0 {
+        return format!("{:.0} ms", seconds * 1e3);
+    }
+    if seconds < 59.95 {
+        return format!("{seconds:.1} s");
+    }
+    let whole = (seconds + 0.5) as u64;
+    if whole < 3600 {
+        return format!("{} min {:02} s", whole / 60, whole % 60);
+    }
+    format!("{} h {:02} min", whole / 3600, whole % 3600 / 60)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rest_is_in_proportion() {
+        let s = Duration::from_secs;
+        assert_eq!(remaining(s(10), 25, 100), Some(s(30)));
+        assert_eq!(remaining(s(10), 0, 100), None);
+        assert_eq!(remaining(s(10), 100, 100), Some(s(0)));
+    }
+
+    #[test]
+    fn times_read_well() {
+        let of = |s: f64| words(Duration::from_secs_f64(s));
+        assert_eq!(of(0.000_05), "50 µs");
+        assert_eq!(of(0.25), "250 ms");
+        assert_eq!(of(3.14), "3.1 s");
+        assert_eq!(of(59.96), "1 min 00 s");
+        assert_eq!(of(125.0), "2 min 05 s");
+        assert_eq!(of(4200.0), "1 h 10 min");
+    }
+}

@@ -1,0 +1,133 @@
+//! `luxel render`.
+
+use super::args::RenderArgs;
+use super::failure::Failure;
+use super::output::{Encoding, Format, Output, check_writable};
+use super::progress::Progress;
+use super::stats::Account;
+use super::{interrupt, load, print_result, say};
+use luxel::film;
+use luxel::math;
+use luxel::render::{Control, Rendering, Settings, metadata, scene_hash};
+use luxel::trace::isa::Isa;
+use luxel::trace::TraceOptions;
+use std::ffi::OsStr;
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Renders one frame and writes it.
+pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
+    let start = Instant::now();
+    let output = Output::choose(args.output.as_deref(), &args.scene, &args.aov)?;
+    if let Some(path) = &args.stats {
+        check_stats(path)?;
+    }
+    let control = Arc::new(Control::default());
+    interrupt::listen(&control);
+    let mut loaded = load::scene(&args.scene)?;
+    load::print_warnings(&loaded);
+    let settings = settings(args, &loaded.desc);
+    let load = start.elapsed();
+    let rendering = {
+        let _bar = Progress::start(&control, settings.time);
+        loaded.render(&settings, &control, start)?
+    };
+    let hash = scene_hash(&loaded.desc, &loaded.store);
+    let mut encoding = Encoding {
+        gain: math::pow(2.0, args.exposure),
+        aovs: &args.aov,
+        metadata: metadata(&hash, &rendering.scene, &settings, rendering.stats.spp),
+    };
+    if output.format == Format::Png {
+        encoding.metadata.push("exposure", args.exposure);
+    }
+    if rendering.stats.stopped {
+        return Err(write_partial(&output, &rendering, &encoding));
+    }
+    let writing = Instant::now();
+    output.write(&rendering.film, &encoding)?;
+    let account = Account {
+        output: output.to_string(),
+        film: &rendering.film,
+        stats: rendering.stats,
+        load,
+        write: writing.elapsed(),
+        isa: settings.trace.isa.level().to_string(),
+    };
+    tell(args, &output, &account)
+}
+
+/// The path on stdout, what it cost on stderr and in the file of `--stats`.
+fn tell(args: &RenderArgs, output: &Output, account: &Account<'_>) -> Result<(), Failure> {
+    if let Some(path) = &args.stats {
+        film::write_file(path, account.json().as_bytes())
+            .map_err(|e| Failure::io(format!("\"{}\"", path.display()), &e))?;
+    }
+    if output.path.is_some() {
+        print_result(format!("{output}\n").as_bytes())?;
+    }
+    say(&account.line());
+    let bad = account.film.total_non_finite();
+    if bad > 0 {
+        say(&format!(
+            "warning: {bad} samples were not finite and were left out"
+        ));
+    }
+    Ok(())
+}
+
+/// Saves what there is of a render that was stopped. Returns the failure to end with.
+fn write_partial(output: &Output, rendering: &Rendering, encoding: &Encoding<'_>) -> Failure {
+    let samples = rendering.film.total_samples();
+    let Some(partial) = output.partial().filter(|_| samples > 0) else {
+        say("stopped; there was nothing to save");
+        return Failure::stopped();
+    };
+    if let Err(failure) = partial.write(&rendering.film, encoding) {
+        return failure;
+    }
+    let mean = samples as f64 / rendering.film.pixels() as f64;
+    say(&format!("stopped; {partial} has {mean:.1} samples per pixel"));
+    if let Err(failure) = print_result(format!("{partial}\n").as_bytes()) {
+        return failure;
+    }
+    Failure::stopped()
+}
+
+/// The scene's settings, overridden by the arguments.
+fn settings(args: &RenderArgs, desc: &luxel::scene::SceneDesc) -> Settings {
+    let (width, height) = args.size.unwrap_or(desc.render.size);
+    Settings {
+        size: (width, height),
+        frame: args.frame,
+        spp: args.spp.unwrap_or(desc.render.spp),
+        time: args.time,
+        threads: args.threads.map(usize::from),
+        tile: args.tile,
+        accel: args.accel.into(),
+        trace: TraceOptions {
+            max_bounces: args.bounces.unwrap_or(desc.render.max_bounces),
+            seed: args.seed,
+            sampler: args.sampler.into(),
+            nee: args.nee.is_on(),
+            mis: args.mis.is_on(),
+            roulette: args.roulette.is_on(),
+            fresnel: args.fresnel.into(),
+            isa: args.isa.unwrap_or_else(Isa::best),
+            features: args.aov.iter().any(|aov| aov.is_feature()),
+            ids: args.aov.iter().any(|aov| aov.is_id()),
+        },
+    }
+}
+
+/// Other suffixes are refused, so that `--stats room.ron` does not cost anyone a scene.
+fn check_stats(path: &Path) -> Result<(), Failure> {
+    if path.extension() != Some(OsStr::new("json")) {
+        return Err(Failure::usage(
+            format!("\"{}\" is no JSON file", path.display()),
+            "end the name of --stats in .json",
+        ));
+    }
+    check_writable(path)
+}

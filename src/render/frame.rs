@@ -1,0 +1,189 @@
+//! Frames of one scene.
+
+use super::metadata::{metadata, scene_hash};
+use super::passes::Passes;
+use super::tiles::{self, Tile};
+use super::{Control, Settings, Stages, Stats};
+use crate::asset::AssetStore;
+use crate::build::{BuildOptions, SceneBuilder};
+use crate::film::{Film, Metadata, Planes, Window};
+use crate::flat::{FlatScene, PixelFilter};
+use crate::scene::{ColorDesc, FilterDesc, SceneDesc};
+use crate::trace::{Rect, TileSums, trace_tile};
+use crate::world::pose;
+use hecs::World;
+use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
+use std::time::Instant;
+
+/// A rendered frame.
+#[derive(Clone, Debug)]
+pub struct Rendering {
+    /// The sums.
+    pub film: Film,
+    /// What made it.
+    pub metadata: Metadata,
+    /// What it cost.
+    pub stats: Stats,
+}
+
+/// Renders frames of a scene on threads of its own. Geometry that no frame changes is kept from one to the next.
+pub struct Renderer {
+    world: World,
+    builder: SceneBuilder,
+    pool: ThreadPool,
+    hash: String,
+    fps: f64,
+    settings: Settings,
+}
+
+impl Renderer {
+    /// Prepares to render `world`, which was spawned from `desc` with the files of `store`.
+    ///
+    /// # Errors
+    /// If the threads cannot be started.
+    pub fn new(
+        desc: &SceneDesc,
+        world: World,
+        store: &AssetStore,
+        settings: Settings,
+    ) -> Result<Renderer, ThreadPoolBuildError> {
+        // 0 lets rayon ask the machine.
+        let pool = ThreadPoolBuilder::new()
+            .num_threads(settings.threads.unwrap_or(0))
+            .build()?;
+        Ok(Renderer {
+            builder: SceneBuilder::new(&world, store, build_options(desc, &settings)),
+            world,
+            pool,
+            hash: scene_hash(desc, store),
+            fps: desc.animation.fps,
+            settings,
+        })
+    }
+
+    /// SHA-256 of the scene and of every file that it names, in hexadecimal.
+    #[must_use]
+    pub fn hash(&self) -> &str {
+        &self.hash
+    }
+
+    /// Poses the world at `frame / fps` seconds and builds what tracing reads.
+    pub fn build(&mut self, frame: u32) -> (FlatScene, Stages) {
+        let start = Instant::now();
+        pose(&mut self.world, f64::from(frame) / self.fps);
+        let posing = start.elapsed();
+        let (world, builder) = (&self.world, &mut self.builder);
+        let (scene, times) = self.pool.install(|| builder.build(world, frame));
+        let stages = Stages {
+            extract: posing + times.extract,
+            flatten: times.flatten,
+            bvh: times.bvh,
+            ..Stages::default()
+        };
+        (scene, stages)
+    }
+
+    /// Renders a frame, or as much of it as [`Settings::time`] and `control` allow.
+    pub fn render(&mut self, frame: u32, control: &Control) -> Rendering {
+        let deadline = self.settings.time.map(|time| Instant::now() + time);
+        let (scene, stages) = self.build(frame);
+        let (film, mut stats) = self.trace(&scene, control, deadline);
+        stats.stages = Stages {
+            trace: stats.stages.trace,
+            ..stages
+        };
+        Rendering {
+            film,
+            metadata: metadata(&self.hash, &scene, &self.settings, stats.spp),
+            stats,
+        }
+    }
+
+    fn trace(
+        &self,
+        scene: &FlatScene,
+        control: &Control,
+        deadline: Option<Instant>,
+    ) -> (Film, Stats) {
+        let settings = &self.settings;
+        let (width, height) = settings.size;
+        control.expect(u64::from(width) * u64::from(height) * u64::from(settings.spp));
+        let mut tiles = tiles::cut(width, height, settings.tile);
+        let start = Instant::now();
+        let passes = Passes::new(settings.spp, deadline);
+        let spp = self.pool.install(|| {
+            tiles::run(&mut tiles, passes, control, |rect, samples, sums| {
+                trace_tile(scene, &settings.trace, rect, samples, sums);
+            })
+        });
+        let mut stats = Stats {
+            threads: self.pool.current_num_threads(),
+            // A deadline ends before all samples too, but between passes and on purpose.
+            stopped: control.stopped() && spp < settings.spp,
+            spp,
+            ..Stats::default()
+        };
+        stats.stages.trace = start.elapsed();
+        for (_, sums) in &tiles {
+            stats.closest_rays += sums.rays[0];
+            stats.occlusion_rays += sums.rays[1];
+        }
+        (assemble(width, height, tiles), stats)
+    }
+}
+
+fn build_options(desc: &SceneDesc, settings: &Settings) -> BuildOptions {
+    BuildOptions {
+        accel: settings.accel,
+        size: settings.size,
+        filter: match desc.render.filter {
+            FilterDesc::Box => PixelFilter::Box,
+            FilterDesc::Gaussian { radius_px } => PixelFilter::Gaussian(radius_px as f32),
+        },
+        background: match desc.background {
+            ColorDesc::Linear(color) => color.map(|c| c as f32),
+            // The reader refuses images as a background: not yet.
+            ColorDesc::Image { .. } | ColorDesc::Hdr(_) => [0.0; 3],
+        },
+        uv_aov: settings.trace.ids,
+        fresnel: settings.trace.fresnel,
+    }
+}
+
+/// Puts tiles together, one after the other, so that their memory is given back on the way.
+pub(super) fn assemble(width: u32, height: u32, tiles: Vec<Tile>) -> Film {
+    let mut film = Film::new(width, height);
+    for (rect, sums) in tiles {
+        if !sums.count.is_empty() {
+            film.put(window(rect), &planes(sums));
+        }
+    }
+    film
+}
+
+fn window(rect: Rect) -> Window {
+    Window {
+        x: rect.x,
+        y: rect.y,
+        width: rect.width,
+        height: rect.height,
+    }
+}
+
+/// Moves the arrays: tracing may not know the film, nor the film tracing.
+fn planes(sums: TileSums) -> Planes {
+    Planes {
+        rgb: sums.rgb,
+        rgb_squared: sums.rgb_squared,
+        count: sums.count,
+        non_finite: sums.non_finite,
+        hit_count: sums.hit_count,
+        albedo: sums.albedo,
+        normal: sums.normal,
+        geonormal: sums.geonormal,
+        depth: sums.depth,
+        uv: sums.uv,
+        prim: sums.prim,
+        entity: sums.entity,
+    }
+}

@@ -1,0 +1,58 @@
+//! What an image says about how it was made: what can change a pixel, and nothing else.
+
+use super::Settings;
+use crate::asset::AssetStore;
+use crate::film::Metadata;
+use crate::flat::{FlatScene, PixelFilter};
+use crate::scene::SceneDesc;
+use crate::trace::{Fresnel, Sampler};
+use sha2::{Digest, Sha256};
+
+/// SHA-256 over the scene file's text and the contents of every file that it names, as 64 hexadecimal digits.
+pub(super) fn scene_hash(desc: &SceneDesc, store: &AssetStore) -> String {
+    let mut hash = Sha256::new();
+    // The length keeps the border between the two parts.
+    hash.update((desc.source.len() as u64).to_le_bytes());
+    hash.update(desc.source.as_bytes());
+    hash.update(store.hash());
+    hash.finalize().iter().map(|b| format!("{b:02x}")).collect()
+}
+
+/// The metadata of a rendering of `scene` with `spp` samples in every pixel. What only one file format has, as a PNG
+/// its exposure, is the caller's to add.
+pub(super) fn metadata(hash: &str, scene: &FlatScene, settings: &Settings, spp: u32) -> Metadata {
+    let camera = &scene.camera;
+    let dials = &settings.trace;
+    let switch = |on| if on { "on" } else { "off" };
+    let mut metadata = Metadata::default();
+    metadata.push("version", env!("CARGO_PKG_VERSION"));
+    metadata.push("scene", hash);
+    metadata.push("frame", scene.frame);
+    metadata.push("size", format!("{}x{}", camera.width, camera.height));
+    metadata.push("spp", spp);
+    metadata.push("seed", dials.seed);
+    metadata.push("bounces", dials.max_bounces);
+    metadata.push("filter", filter_name(camera.filter));
+    let sampler = match dials.sampler {
+        Sampler::Independent => "independent",
+        Sampler::Sobol => "sobol",
+    };
+    metadata.push("sampler", sampler);
+    metadata.push("nee", switch(dials.nee));
+    metadata.push("mis", switch(dials.mis));
+    metadata.push("roulette", switch(dials.roulette));
+    let fresnel = match dials.fresnel {
+        Fresnel::Exact => "exact",
+        Fresnel::Schlick => "schlick",
+        Fresnel::Off => "off",
+    };
+    metadata.push("fresnel", fresnel);
+    metadata
+}
+
+fn filter_name(filter: PixelFilter) -> String {
+    match filter {
+        PixelFilter::Box => "box".to_owned(),
+        PixelFilter::Gaussian(radius) => format!("gaussian {radius}px"),
+    }
+}

@@ -1,0 +1,29 @@
+//! What a frame is rendered with.
+
+use crate::build::Accel;
+use crate::trace::TraceOptions;
+use std::time::Duration;
+
+/// Settings of a render. Threads, tile, accel and the instruction set change no bit of the image.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Width and height in pixels, each at least 1.
+    pub size: (u32, u32),
+    /// Samples per pixel, at least 1.
+    pub spp: u32,
+    /// Stop before this is over, if that comes first; at least one sample per pixel is traced.
+    pub time: Option<Duration>,
+    /// Worker threads; as many as the machine offers if not said.
+    pub threads: Option<usize>,
+    /// Side of a tile in pixels, at least 1.
+    pub tile: u32,
+    /// How much of a tree is built.
+    pub accel: Accel,
+    /// Dials of tracing.
+    pub trace: TraceOptions,
+}
+
+impl Settings {
+    /// Side of a tile: small enough that the last tiles leave no thread idle for long, large enough for a batch.
+    pub const DEFAULT_TILE: u32 = 32;
+}

@@ -1,0 +1,47 @@
+//! What a render cost.
+
+use std::time::Duration;
+
+/// Wall-clock time of each stage.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stages {
+    /// Reading the world: pose included.
+    pub extract: Duration,
+    /// World space to flat buffers.
+    pub flatten: Duration,
+    /// Bounding volume hierarchies.
+    pub bvh: Duration,
+    /// Tracing.
+    pub trace: Duration,
+}
+
+/// What a render cost, and what it did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stats {
+    /// Where the time went.
+    pub stages: Stages,
+    /// Closest-hit rays.
+    pub closest_rays: u64,
+    /// Occlusion tests.
+    pub occlusion_rays: u64,
+    /// Threads.
+    pub threads: usize,
+    /// Samples that every pixel has.
+    pub spp: u32,
+    /// Whether it was stopped before all samples or the time were used up.
+    pub stopped: bool,
+}
+
+impl Stats {
+    /// Rays of both kinds per second of tracing, in millions.
+    #[must_use]
+    pub fn mrays_per_second(&self) -> f64 {
+        let seconds = self.stages.trace.as_secs_f64();
+        let rays = (self.closest_rays + self.occlusion_rays) as f64;
+        if seconds > 0.0 {
+            rays / seconds / 1e6
+        } else {
+            0.0
+        }
+    }
+}
