@@ -3,7 +3,9 @@
 
 pub mod aabb;
 pub mod func;
+pub mod srgb;
 
 pub use aabb::Aabb;
 pub use func::{acos, atan2, cos, exp, ln, pow, sin, sin_cos, sin_cos_turns, tan};
 pub use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3, Vec2, Vec3};
+pub use srgb::{SRGB_BYTES, srgb_to_linear};

@@ -1,29 +1,31 @@
 //! Tracing: loops over SoA ray batches and path state. Takes a [`crate::flat::FlatScene`] and a lent slice, gives
 //! radiance samples. Infallible.
 //!
+//! A wave of paths goes through stages that are loops: generate → closest hit → surface → emission → sort by material →
+//! sample light → occluded → sample bsdf → roulette and compact → accumulate.
+//!
 //! Deliberately absent: hecs, files, images, rayon, recursion, allocation per ray, locks.
 
+mod camera;
+pub mod fresnel;
 pub mod isa;
+mod light;
 pub mod options;
+mod path;
 pub mod rays;
+mod sampler;
+mod scatter;
+pub mod spawn;
+mod surface;
+pub mod texture;
 pub mod tile;
+mod vector;
+mod wave;
 
 pub use isa::Isa;
 pub use options::{Fresnel, Sampler, TraceOptions};
+pub use path::Tracer;
 pub use rays::{Hits, Rays};
 pub use tile::{Rect, TileSums};
-
-use crate::flat::FlatScene;
-use std::ops::Range;
-
-/// Adds the samples `samples` of every pixel of `rect` to `sums` (made here if empty).
-///
-/// Sample s of a pixel is a pure function of (scene, frame, pixel, s, seed).
-pub fn trace_tile(
-    _scene: &FlatScene,
-    _options: &TraceOptions,
-    _rect: Rect,
-    _samples: Range<u32>,
-    _sums: &mut TileSums,
-) {
-}
+pub(crate) fn closest_hit(_: &crate::flat::FlatScene, _: Isa, _: &Rays, _: &mut Hits) {}
+pub(crate) fn occluded(_: &crate::flat::FlatScene, _: Isa, _: &Rays, _: &mut Vec<bool>) {}

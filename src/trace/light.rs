@@ -1,0 +1,200 @@
+//! Lights: choosing a point on one, and the density with which a given point would have been chosen.
+//!
+//! A light is chosen by its share of the table's weights; then a point of a triangle uniformly by area, of a sphere
+//! uniformly in the solid angle that it fills.
+
+use super::vector::{basis, unit};
+use crate::flat::{FlatScene, Spheres};
+use crate::math::{DVec3, Vec3, sin_cos_turns};
+use std::f64::consts::{PI, TAU};
+
+/// Shadow rays stop short of the light by this factor, four units in the last place: the light's own hit, whose t is
+/// rounded to half a unit, stays behind the end.
+const SHORT: f32 = 1.0 - 1.0 / 4_194_304.0;
+
+/// γ(7) = 7ε / (1 − 7ε), ε = 2⁻²⁴: error factor of a point interpolated in a triangle (Pharr et al., §6.8).
+const GAMMA_7: f32 = 7.0 / 16_777_216.0 * (1.0 + 7.0 / 16_777_216.0 * 2.0);
+
+/// A direction towards a light.
+pub(super) struct LightSample {
+    /// Unit.
+    pub(super) dir: Vec3,
+    /// Where the shadow ray ends.
+    pub(super) t_max: f32,
+    /// What the light sends along it.
+    pub(super) radiance: Vec3,
+    /// Density over solid angle, the choice of the light included.
+    pub(super) pdf: f32,
+}
+
+/// Samples the light table from a point; `None` where the chosen light sends nothing there.
+pub(super) fn sample_light(
+    scene: &FlatScene,
+    from: Vec3,
+    choice: f32,
+    u: [f32; 2],
+) -> Option<LightSample> {
+    let lights = &scene.lights;
+    let total = lights.total();
+    let target = f64::from(choice) * total;
+    let chosen = lights
+        .cumulative
+        .partition_point(|&sum| sum <= target)
+        .min(lights.len().checked_sub(1)?);
+    match lights.spheres.get(chosen) {
+        Some(&sphere) => sample_sphere(scene, from, sphere as usize, u, total),
+        None => sample_triangle(scene, from, chosen - lights.spheres.len(), u, total),
+    }
+}
+
+/// Density, over solid angle from a point, of sampling the emitter that a ray in direction `dir` hit at distance `t`
+/// with geometric normal `ng`; 0 where it could not have been sampled.
+pub(super) fn light_pdf(
+    scene: &FlatScene,
+    from: Vec3,
+    (dir, t): (Vec3, f32),
+    (prim, ng): (u32, Vec3),
+    radiance: Vec3,
+) -> f32 {
+    let total = scene.lights.total();
+    if prim & Spheres::TAG != 0 {
+        let cone = Cone::new(scene, from, (prim & !Spheres::TAG) as usize);
+        return cone.map_or(0.0, |cone| {
+            (cone.pdf() * sphere_weight(cone.radius, radiance) / total) as f32
+        });
+    }
+    triangle_pdf(t, -dir.dot(ng), radiance, total)
+}
+
+/// Area times mean radiance, as in the table.
+fn sphere_weight(radius: f64, radiance: Vec3) -> f64 {
+    4.0 * PI * radius * radius * mean(radiance)
+}
+
+fn mean(c: Vec3) -> f64 {
+    (f64::from(c.x) + f64::from(c.y) + f64::from(c.z)) / 3.0
+}
+
+/// A triangle is chosen with density mean / total per area, whatever its size.
+fn triangle_pdf(distance: f32, cos: f32, radiance: Vec3, total: f64) -> f32 {
+    if cos > 0.0 {
+        (mean(radiance) / total) as f32 * (distance * distance / cos)
+    } else {
+        0.0
+    }
+}
+
+/// The directions from a point in which a sphere shows its emitting side.
+struct Cone {
+    /// From the point to the centre.
+    to_center: DVec3,
+    radius: f64,
+    /// 1 − cos of the half angle; 2, the whole sphere of directions, inside an inverted sphere.
+    one_minus_cos: f64,
+}
+
+impl Cone {
+    /// `None` on the side that does not emit.
+    ///
+    /// 1 − cos θ = s² / (1 + √(1 − s²)), s = r / d, has no cancellation at any distance; d² − r² is (d − r)(d + r).
+    fn new(scene: &FlatScene, from: Vec3, sphere: usize) -> Option<Cone> {
+        let radius = scene.spheres.radius[sphere];
+        let to_center = DVec3::from(scene.spheres.center[sphere]) - from.as_dvec3();
+        let d2 = to_center.length_squared();
+        let d = d2.sqrt();
+        let gap = (d - radius) * (d + radius);
+        let one_minus_cos = match (gap > 0.0, scene.spheres.inverted[sphere]) {
+            (true, false) => (radius * radius / d2) / (1.0 + (gap / d2).sqrt()),
+            (false, true) => 2.0,
+            _ => return None,
+        };
+        Some(Cone {
+            to_center,
+            radius,
+            one_minus_cos,
+        })
+    }
+
+    fn pdf(&self) -> f64 {
+        1.0 / (TAU * self.one_minus_cos)
+    }
+}
+
+fn sample_sphere(
+    scene: &FlatScene,
+    from: Vec3,
+    sphere: usize,
+    u: [f32; 2],
+    total: f64,
+) -> Option<LightSample> {
+    let cone = Cone::new(scene, from, sphere)?;
+    let axis = unit(cone.to_center.as_vec3());
+    let axis = if axis.is_finite() { axis } else { Vec3::Z };
+    let height = cone.one_minus_cos * f64::from(u[0]);
+    let (cos, sin) = (
+        (1.0 - height) as f32,
+        (height * (2.0 - height)).sqrt() as f32,
+    );
+    let (sin_phi, cos_phi) = sin_cos_turns(u[1]);
+    let (s, t) = basis(axis);
+    let dir = unit(s * (sin * cos_phi) + t * (sin * sin_phi) + axis * cos);
+    let material = scene.spheres.material[sphere].0 as usize;
+    let radiance = Vec3::from(scene.materials[material].emission);
+    let pdf = (cone.pdf() * sphere_weight(cone.radius, radiance) / total) as f32;
+    Some(LightSample {
+        dir,
+        t_max: cone.distance(dir) * SHORT,
+        radiance,
+        pdf,
+    })
+}
+
+impl Cone {
+    /// Distance to the emitting side along the rounded direction, as the kernel will find it; a direction that rounding
+    /// puts beside the rim ends where it comes nearest.
+    fn distance(&self, dir: Vec3) -> f32 {
+        let d = dir.as_dvec3();
+        let a = d.length_squared();
+        let b = self.to_center.dot(d) / a;
+        let beside = self.to_center - d * b;
+        let half = ((self.radius * self.radius - beside.length_squared()).max(0.0) / a).sqrt();
+        (if self.one_minus_cos < 2.0 {
+            b - half
+        } else {
+            b + half
+        }) as f32
+    }
+}
+
+fn sample_triangle(
+    scene: &FlatScene,
+    from: Vec3,
+    i: usize,
+    u: [f32; 2],
+    total: f64,
+) -> Option<LightSample> {
+    let lights = &scene.lights.triangles;
+    let (v0, e1, e2) = (
+        Vec3::from(lights.v0[i]),
+        Vec3::from(lights.e1[i]),
+        Vec3::from(lights.e2[i]),
+    );
+    // Uniform by area: the square folded along its diagonal by the square root (Turk 1990).
+    let root = u[0].sqrt();
+    let (b1, b2) = (root * (1.0 - u[1]), root * u[1]);
+    let ng = unit(e1.cross(e2));
+    let point = v0 + e1 * b1 + e2 * b2;
+    let size = v0.abs() + (e1 * b1).abs() + (e2 * b2).abs();
+    let point = point + ng * (GAMMA_7 * size.dot(ng.abs()));
+    let to = point - from;
+    let distance = to.length();
+    let dir = to * (1.0 / distance);
+    let radiance = Vec3::from(lights.radiance[i]);
+    let pdf = triangle_pdf(distance, -dir.dot(ng), radiance, total);
+    (pdf > 0.0 && pdf.is_finite()).then(|| LightSample {
+        dir,
+        t_max: distance * SHORT,
+        radiance,
+        pdf,
+    })
+}

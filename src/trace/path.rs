@@ -1,0 +1,361 @@
+//! The path loop: the stages of a bounce over a wave, from camera rays to sums.
+
+use super::camera::{ImageSample, generate, image_direction};
+use super::light::light_pdf;
+use super::sampler::{Pair, pixel_key, sample_pair};
+use super::scatter::{Bounce, mis_weight, sample_bsdf, sample_lights};
+use super::surface::surface;
+use super::vector::{get, set, unit};
+use super::wave::{WAVE, Wave};
+use super::{Hits, Rect, TileSums, TraceOptions, closest_hit, occluded};
+use crate::flat::{FlatScene, Needs, Scatter, Spheres};
+use crate::math::Vec3;
+use std::ops::Range;
+
+/// Roulette starts after this many scattering events.
+const ROULETTE_START: u32 = 5;
+
+/// A worker: it traces one tile after the other of a scene and keeps its working memory between them, so that tracing
+/// allocates nothing in the steady state.
+#[derive(Debug)]
+pub struct Tracer<'a> {
+    scene: &'a FlatScene,
+    options: &'a TraceOptions,
+    wave: Wave,
+}
+
+impl<'a> Tracer<'a> {
+    /// A worker with empty buffers.
+    #[must_use]
+    pub fn new(scene: &'a FlatScene, options: &'a TraceOptions) -> Tracer<'a> {
+        Tracer {
+            scene,
+            options,
+            wave: Wave::default(),
+        }
+    }
+
+    /// Adds the samples `samples` of every pixel of `rect` to `sums`, which are made here when they are empty.
+    ///
+    /// Sample s of a pixel is a pure function of (scene, frame, pixel, s, seed); a pixel's samples are added in f64 in
+    /// the order of their index, whatever the rectangle and however the range is split.
+    pub fn trace_tile(&mut self, rect: Rect, samples: Range<u32>, sums: &mut TileSums) {
+        let Tracer {
+            scene,
+            options,
+            wave,
+        } = self;
+        let pixels = rect.width as usize * rect.height as usize;
+        if sums.rgb.is_empty() {
+            *sums = TileSums::new(pixels, options);
+            if options.ids {
+                trace_ids(wave, scene, options, rect, sums);
+            }
+        }
+        let group = (WAVE / samples.len().max(1)).clamp(1, WAVE);
+        let step = WAVE / group.min(pixels.max(1));
+        for first in (0..pixels).step_by(group) {
+            let group = first..(first + group).min(pixels);
+            for start in samples.clone().step_by(step) {
+                let range = start..start.saturating_add(step as u32).min(samples.end);
+                let samples = range.len();
+                start_paths(wave, scene, options, rect, (group.clone(), range));
+                trace_paths(wave, scene, options, sums);
+                accumulate(wave, sums, group.clone(), samples, scene.rebase.scale);
+            }
+        }
+    }
+}
+
+impl TileSums {
+    fn new(pixels: usize, options: &TraceOptions) -> TileSums {
+        let features = if options.features { pixels } else { 0 };
+        let ids = if options.ids { pixels } else { 0 };
+        TileSums {
+            rgb: vec![[0.0; 3]; pixels],
+            rgb_squared: vec![[0.0; 3]; pixels],
+            count: vec![0; pixels],
+            non_finite: vec![0; pixels],
+            hit_count: vec![0; features],
+            albedo: vec![[0.0; 3]; features],
+            normal: vec![[0.0; 3]; features],
+            geonormal: vec![[0.0; 3]; features],
+            depth: vec![0.0; features],
+            uv: vec![[0.0; 2]; ids],
+            prim: vec![u32::MAX; ids],
+            entity: vec![u32::MAX; ids],
+            rays: [0; 2],
+        }
+    }
+}
+
+/// Fills the wave with the camera rays of some pixels and samples; slots are pixel by pixel, sample by sample.
+fn start_paths(
+    wave: &mut Wave,
+    scene: &FlatScene,
+    options: &TraceOptions,
+    rect: Rect,
+    (pixels, samples): (Range<usize>, Range<u32>),
+) {
+    wave.paths.clear();
+    wave.slots
+        .reset(pixels.len() * samples.len(), options.features);
+    for pixel in pixels {
+        let x = rect.x + (pixel as u32 % rect.width);
+        let y = rect.y + (pixel as u32 / rect.width);
+        let key = pixel_key(options.seed, scene.frame, x, y);
+        for sample in samples.clone() {
+            generate(
+                wave,
+                &scene.camera,
+                options.sampler,
+                ImageSample { x, y, sample, key },
+            );
+        }
+    }
+}
+
+/// The stages of every bounce, until no path is left.
+fn trace_paths(wave: &mut Wave, scene: &FlatScene, options: &TraceOptions, sums: &mut TileSums) {
+    for index in 0..=options.max_bounces {
+        if wave.paths.len() == 0 {
+            return;
+        }
+        let bounce = Bounce {
+            scene,
+            options,
+            index,
+        };
+        closest_hit(scene, options.isa, &wave.paths.rays, &mut wave.hits);
+        sums.rays[0] += wave.paths.len() as u64;
+        surface(wave, scene);
+        if index == 0 && options.features {
+            record_features(wave, scene);
+        }
+        emission(wave, bounce);
+        if index == options.max_bounces {
+            return;
+        }
+        sort_by_scatter(wave, scene);
+        if options.nee && scene.needs.lights && (scene.needs.diffuse || scene.needs.plastic) {
+            sample_lights(wave, bounce);
+            occluded(
+                scene,
+                options.isa,
+                &wave.shadows.rays,
+                &mut wave.shadows.blocked,
+            );
+            sums.rays[1] += wave.shadows.rays.len() as u64;
+            add_lights(wave);
+        }
+        for kind in kinds(&scene.needs) {
+            sample_bsdf(wave, bounce, kind);
+        }
+        if options.roulette && index + 1 >= ROULETTE_START {
+            roulette(wave, bounce);
+        }
+        wave.paths.compact(&wave.alive);
+    }
+}
+
+/// The kinds of scattering that the scene has.
+fn kinds(needs: &Needs) -> impl Iterator<Item = Scatter> {
+    [
+        (needs.diffuse, Scatter::Diffuse),
+        (needs.mirror, Scatter::Mirror),
+        (needs.glass, Scatter::Glass),
+        (needs.plastic, Scatter::Plastic),
+        (needs.metal, Scatter::Metal),
+    ]
+    .into_iter()
+    .filter_map(|(needed, kind)| needed.then_some(kind))
+}
+
+/// Adds what the hit surfaces emit, and the background where nothing was hit.
+fn emission(wave: &mut Wave, bounce: Bounce) {
+    let Bounce { scene, options, .. } = bounce;
+    let background = Vec3::from(scene.background);
+    for i in 0..wave.paths.len() {
+        let slot = wave.paths.slot[i] as usize;
+        let throughput = get(&wave.paths.throughput, i);
+        if wave.hits.prim[i] == Hits::NONE {
+            if scene.needs.background {
+                wave.slots.add(slot, throughput * background);
+            }
+            continue;
+        }
+        let emitted = Vec3::from(scene.materials[wave.surfaces.material[i] as usize].emission);
+        let dir = get(&wave.paths.rays.dir, i);
+        let ng = get(&wave.surfaces.ng, i);
+        if emitted.max_element() <= 0.0 || dir.dot(ng) >= 0.0 {
+            continue;
+        }
+        let mut weight = 1.0;
+        let pdf = wave.paths.pdf[i];
+        if options.nee && pdf > 0.0 {
+            let from = get(&wave.paths.rays.origin, i);
+            let light = light_pdf(
+                scene,
+                from,
+                (dir, wave.hits.t[i]),
+                (wave.hits.prim[i], ng),
+                emitted,
+            );
+            weight = match options.mis {
+                true => mis_weight(pdf, light),
+                false => f32::from(u8::from(light == 0.0)),
+            };
+        }
+        wave.slots.add(slot, throughput * emitted * weight);
+    }
+}
+
+/// Groups the paths that hit something by how the surface scatters.
+fn sort_by_scatter(wave: &mut Wave, scene: &FlatScene) {
+    wave.by_scatter.iter_mut().for_each(Vec::clear);
+    wave.alive.clear();
+    for i in 0..wave.paths.len() {
+        let scatter = match wave.hits.prim[i] {
+            Hits::NONE => Scatter::Nothing,
+            _ => scene.materials[wave.surfaces.material[i] as usize].scatter,
+        };
+        wave.alive.push(scatter != Scatter::Nothing);
+        wave.by_scatter[scatter as usize].push(i as u32);
+    }
+}
+
+/// Adds the light samples that nothing blocks.
+fn add_lights(wave: &mut Wave) {
+    let Wave { shadows, slots, .. } = wave;
+    for i in 0..shadows.slot.len() {
+        if !shadows.blocked[i] {
+            slots.add(shadows.slot[i] as usize, get(&shadows.radiance, i));
+        }
+    }
+}
+
+/// Ends paths that carry little, and raises the others by as much (Arvo and Kirk 1990). A throughput that a refraction
+/// shrank only until the path leaves the medium is not held against it.
+fn roulette(wave: &mut Wave, bounce: Bounce) {
+    for i in 0..wave.paths.len() {
+        if !wave.alive[i] {
+            continue;
+        }
+        let throughput = get(&wave.paths.throughput, i);
+        let survival = throughput.max_element() * wave.paths.eta2[i];
+        if survival >= 1.0 {
+            continue;
+        }
+        let slot = wave.paths.slot[i] as usize;
+        let (key, sample) = (wave.slots.key[slot], wave.slots.sample[slot]);
+        let [u, _] = sample_pair(
+            bounce.options.sampler,
+            key,
+            sample,
+            Pair::Roulette(bounce.index),
+        );
+        wave.alive[i] = u < survival;
+        set(&mut wave.paths.throughput, i, throughput * (1.0 / survival));
+    }
+}
+
+/// Keeps albedo, normals and depth of the first hits.
+fn record_features(wave: &mut Wave, scene: &FlatScene) {
+    let forward = Vec3::from(scene.camera.forward);
+    for i in 0..wave.paths.len() {
+        if wave.hits.prim[i] == Hits::NONE {
+            continue;
+        }
+        let slot = wave.paths.slot[i] as usize;
+        let scatter = scene.materials[wave.surfaces.material[i] as usize].scatter;
+        let albedo = match scatter {
+            Scatter::Glass | Scatter::Mirror => Vec3::ONE,
+            _ => get(&wave.surfaces.color, i),
+        };
+        let [albedos, normals, geonormals] = &mut wave.slots.features;
+        set(albedos, slot, albedo);
+        set(normals, slot, get(&wave.surfaces.ns, i));
+        set(geonormals, slot, get(&wave.surfaces.ng, i));
+        wave.slots.depth[slot] = wave.hits.t[i] * get(&wave.paths.rays.dir, i).dot(forward);
+    }
+}
+
+/// Adds the wave's samples to the sums, per pixel in the order of the sample index. A sample that is not finite is
+/// counted and left out.
+fn accumulate(wave: &Wave, sums: &mut TileSums, pixels: Range<usize>, samples: usize, scale: f64) {
+    let slots = &wave.slots;
+    for (slot, pixel) in pixels
+        .flat_map(|p| std::iter::repeat_n(p, samples))
+        .enumerate()
+    {
+        let radiance = get(&slots.radiance, slot);
+        if radiance.is_finite() {
+            sums.count[pixel] += 1;
+            for (k, c) in radiance.as_dvec3().to_array().into_iter().enumerate() {
+                sums.rgb[pixel][k] += c;
+                sums.rgb_squared[pixel][k] += c * c;
+            }
+        } else {
+            sums.non_finite[pixel] += 1;
+        }
+        if !slots.depth.is_empty() && slots.depth[slot].is_finite() {
+            sums.hit_count[pixel] += 1;
+            sums.depth[pixel] += f64::from(slots.depth[slot]) / scale;
+            let targets = [&mut sums.albedo, &mut sums.normal, &mut sums.geonormal];
+            for (target, feature) in targets.into_iter().zip(&slots.features) {
+                for k in 0..3 {
+                    target[pixel][k] += f64::from(feature[k][slot]);
+                }
+            }
+        }
+    }
+}
+
+/// What the rays through the pixels' centres hit: texture coordinates, triangle and entity.
+fn trace_ids(
+    wave: &mut Wave,
+    scene: &FlatScene,
+    options: &TraceOptions,
+    rect: Rect,
+    sums: &mut TileSums,
+) {
+    wave.paths.clear();
+    for pixel in 0..sums.uv.len() as u32 {
+        let (x, y) = (rect.x + pixel % rect.width, rect.y + pixel / rect.width);
+        let dir = unit(image_direction(
+            &scene.camera,
+            x as f32 + 0.5,
+            y as f32 + 0.5,
+        ));
+        wave.paths.push(Vec3::from(scene.camera.origin), dir, pixel);
+    }
+    closest_hit(scene, options.isa, &wave.paths.rays, &mut wave.hits);
+    surface(wave, scene);
+    for i in 0..sums.uv.len() {
+        let (prim, instance) = (wave.hits.prim[i], wave.hits.instance[i]);
+        if prim == Hits::NONE {
+            continue;
+        }
+        sums.uv[i] = [wave.surfaces.uv[0][i], wave.surfaces.uv[1][i]];
+        (sums.prim[i], sums.entity[i]) = identity(scene, prim, instance);
+    }
+}
+
+/// Triangle index in its file (0 for a sphere) and index of the entity.
+fn identity(scene: &FlatScene, prim: u32, instance: u32) -> (u32, u32) {
+    if prim & Spheres::TAG != 0 {
+        return (0, scene.spheres.object[(prim & !Spheres::TAG) as usize].0);
+    }
+    let p = prim as usize;
+    if instance == Hits::WORLD {
+        return (
+            scene.world.shading.file_prim[p],
+            scene.world.shading.object[p].0,
+        );
+    }
+    let instance = &scene.instances[instance as usize];
+    (
+        scene.local[instance.geometry as usize].shading.file_prim[p],
+        instance.object.0,
+    )
+}

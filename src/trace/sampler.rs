@@ -1,0 +1,197 @@
+//! Random numbers: a pure function of (seed, frame, pixel, sample, dimension).
+//!
+//! Dimensions come in pairs, by a fixed table ([`Pair`]), each padded on its own: the sample index is shuffled per
+//! pair, the two coordinates are Owen-scrambled (Burley 2020, "Practical hash-based Owen scrambling", JCGT 9(4)).
+
+use super::Sampler;
+
+/// What a pair of dimensions is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Pair {
+    /// Place in the pixel.
+    Pixel,
+    /// Place on the lens.
+    Lens,
+    /// Which light, and which lobe of the bsdf, at a bounce.
+    Choice(u32),
+    /// Place on the light.
+    Light(u32),
+    /// Direction of the bsdf.
+    Direction(u32),
+    /// Roulette; the second is not used.
+    Roulette(u32),
+}
+
+/// Pairs of a camera ray, and pairs of every bounce.
+const CAMERA_PAIRS: u32 = 2;
+const BOUNCE_PAIRS: u32 = 4;
+
+impl Pair {
+    /// Its row in the table of dimensions.
+    fn row(self) -> u32 {
+        match self {
+            Pair::Pixel => 0,
+            Pair::Lens => 1,
+            Pair::Choice(b) => CAMERA_PAIRS + b * BOUNCE_PAIRS,
+            Pair::Light(b) => CAMERA_PAIRS + b * BOUNCE_PAIRS + 1,
+            Pair::Direction(b) => CAMERA_PAIRS + b * BOUNCE_PAIRS + 2,
+            Pair::Roulette(b) => CAMERA_PAIRS + b * BOUNCE_PAIRS + 3,
+        }
+    }
+}
+
+/// The key of a pixel's random numbers.
+#[must_use]
+pub(super) fn pixel_key(seed: u64, frame: u32, x: u32, y: u32) -> u32 {
+    let mut key = mix(seed as u32 ^ 0x9e37_79b9);
+    for word in [(seed >> 32) as u32, frame, x, y] {
+        key = mix(key ^ word);
+    }
+    key
+}
+
+/// Two numbers in [0, 1), multiples of 2⁻²⁴.
+#[inline]
+#[must_use]
+pub(super) fn sample_pair(sampler: Sampler, key: u32, sample: u32, pair: Pair) -> [f32; 2] {
+    let key = mix(key ^ pair.row().wrapping_mul(0x9e37_79b9));
+    let (x, y) = match sampler {
+        Sampler::Sobol => {
+            let index = scramble(sample, key);
+            (
+                scramble_reversed(index, mix(key ^ 1)),
+                scramble(sobol_second(index), mix(key ^ 2)),
+            )
+        }
+        Sampler::Independent => {
+            let x = mix(mix(key ^ sample) ^ 0x85eb_ca6b);
+            (x, mix(x ^ key))
+        }
+    };
+    [unit(x), unit(y)]
+}
+
+/// The top 24 bits as a number in [0, 1).
+#[inline(always)]
+fn unit(x: u32) -> f32 {
+    (x >> 8) as f32 * (1.0 / 16_777_216.0)
+}
+
+/// A bijective mix of 32 bits: xor-shift and multiply with the constants of the "lowbias32" search by C. Wellons.
+#[inline(always)]
+fn mix(mut x: u32) -> u32 {
+    x ^= x >> 16;
+    x = x.wrapping_mul(0x7feb_352d);
+    x ^= x >> 15;
+    x = x.wrapping_mul(0x846c_a68b);
+    x ^ (x >> 16)
+}
+
+/// Owen scrambling of the bits of x, from the highest down: every bit is flipped by a hash of those above it.
+#[inline(always)]
+fn scramble(x: u32, seed: u32) -> u32 {
+    laine_karras(x.reverse_bits(), seed).reverse_bits()
+}
+
+/// [`scramble`] of the bit reversal of x: the first Sobol dimension is that reversal.
+#[inline(always)]
+fn scramble_reversed(x: u32, seed: u32) -> u32 {
+    laine_karras(x, seed).reverse_bits()
+}
+
+/// Every bit is changed by lower bits only (Laine and Karras 2011, constants of Burley 2020, listing 3).
+#[inline(always)]
+fn laine_karras(mut x: u32, seed: u32) -> u32 {
+    x = x.wrapping_add(seed);
+    x ^= x.wrapping_mul(0x6c50_b47c);
+    x ^= x.wrapping_mul(0xb82f_1e52);
+    x ^= x.wrapping_mul(0xc7af_e638);
+    x ^ x.wrapping_mul(0x8d22_f6e6)
+}
+
+/// The second Sobol dimension: the generator matrix is Pascal's triangle modulo 2, applied by five doubling steps.
+#[inline(always)]
+fn sobol_second(index: u32) -> u32 {
+    let mut x = index.reverse_bits();
+    x ^= (x & 0x0000_ffff) << 16;
+    x ^= (x & 0x00ff_00ff) << 8;
+    x ^= (x & 0x0f0f_0f0f) << 4;
+    x ^= (x & 0x3333_3333) << 2;
+    x ^ ((x & 0x5555_5555) << 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The second dimension by its definition: direction numbers v(k) = v(k−1) ^ (v(k−1) >> 1) (Sobol 1967).
+    fn sobol_by_definition(index: u32) -> u32 {
+        let mut direction = 1u32 << 31;
+        let mut x = 0;
+        for bit in 0..32 {
+            if index >> bit & 1 == 1 {
+                x ^= direction;
+            }
+            direction ^= direction >> 1;
+        }
+        x
+    }
+
+    #[test]
+    fn second_dimension_is_sobols() {
+        for i in (0..4096).chain((0..2000).map(|i| mix(i))) {
+            assert_eq!(sobol_second(i), sobol_by_definition(i), "{i}");
+        }
+    }
+
+    /// Every elementary interval of area 2⁻ᵐ holds exactly one of 2ᵐ consecutive aligned samples, for each pair.
+    #[test]
+    fn elementary_intervals_hold_one_point() {
+        for (m, pair) in [
+            (4, Pair::Pixel),
+            (8, Pair::Light(0)),
+            (10, Pair::Direction(3)),
+        ] {
+            for block in [0u32, 1, 7] {
+                for log_columns in 0..=m {
+                    let columns = 1u32 << log_columns;
+                    let rows = 1u32 << (m - log_columns);
+                    let mut seen = vec![false; 1 << m];
+                    for s in 0..1u32 << m {
+                        let [x, y] = sample_pair(Sampler::Sobol, 77, (block << m) + s, pair);
+                        let cell = (x * columns as f32) as u32 + columns * (y * rows as f32) as u32;
+                        assert!(
+                            !std::mem::replace(&mut seen[cell as usize], true),
+                            "m {m} block {block} {columns} columns"
+                        );
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn pairs_pixels_and_seeds_are_uncorrelated() {
+        let n = 1u32 << 14;
+        for sampler in [Sampler::Independent, Sampler::Sobol] {
+            let others = [
+                (pixel_key(0, 0, 0, 0), Pair::Light(0)),
+                (pixel_key(0, 0, 1, 0), Pair::Pixel),
+                (pixel_key(0, 1, 0, 0), Pair::Pixel),
+                (pixel_key(1, 0, 0, 0), Pair::Pixel),
+            ];
+            for (key, pair) in others {
+                let mut sum = 0.0;
+                for s in 0..n {
+                    let a = sample_pair(sampler, pixel_key(0, 0, 0, 0), s, Pair::Pixel);
+                    let b = sample_pair(sampler, key, s, pair);
+                    sum += (f64::from(a[0]) - 0.5) * (f64::from(b[0]) - 0.5);
+                    sum += (f64::from(a[1]) - 0.5) * (f64::from(b[1]) - 0.5);
+                }
+                // Standard deviation of the mean product of independent uniforms: 1 / (12 √(2 n)).
+                let z = sum / f64::from(2 * n) * 12.0 * f64::from(2 * n).sqrt();
+                assert!(z.abs() < 4.0, "{sampler:?} {pair:?}: z = {z}");
+            }
+        }
+    }
+}

@@ -1,0 +1,182 @@
+//! The wave: a batch of paths in SoA path state, all at the same bounce.
+
+use super::vector::{get, set};
+use super::{Hits, Rays};
+use crate::math::Vec3;
+
+/// Paths in flight at once. Batches of 512 to 2048 were within 5 % of each other in a probe of the room of spheres.
+pub(super) const WAVE: usize = 1024;
+
+/// Path state; entry i of every array is one live path.
+#[derive(Debug, Default)]
+pub(super) struct Paths {
+    /// The ray to trace next.
+    pub(super) rays: Rays,
+    /// Product of bsdf weights so far.
+    pub(super) throughput: [Vec<f32>; 3],
+    /// Solid-angle density with which the ray's direction was sampled; 0 where no light sample competes (camera rays
+    /// and mirror-like lobes).
+    pub(super) pdf: Vec<f32>,
+    /// Product of squared relative indices of refraction: what roulette takes out of the throughput, since it will be
+    /// put back when the path leaves the medium.
+    pub(super) eta2: Vec<f32>,
+    /// Which sample of the wave it is.
+    pub(super) slot: Vec<u32>,
+}
+
+/// What the surface stage finds; entry i belongs to path i, and is meaningless where the path hit nothing.
+#[derive(Debug, Default)]
+pub(super) struct Surfaces {
+    /// Position, scene units.
+    pub(super) position: [Vec<f32>; 3],
+    /// Unit geometric normal on the authored outside.
+    pub(super) ng: [Vec<f32>; 3],
+    /// Unit shading normal on the same side as `ng`.
+    pub(super) ns: [Vec<f32>; 3],
+    /// Texture coordinates.
+    pub(super) uv: [Vec<f32>; 2],
+    /// Index into the scene's materials.
+    pub(super) material: Vec<u32>,
+    /// Colour of the material here.
+    pub(super) color: [Vec<f32>; 3],
+}
+
+/// Shadow rays of a bounce with what they bring if nothing is in the way.
+#[derive(Debug, Default)]
+pub(super) struct Shadows {
+    pub(super) rays: Rays,
+    /// Radiance times throughput.
+    pub(super) radiance: [Vec<f32>; 3],
+    pub(super) slot: Vec<u32>,
+    pub(super) blocked: Vec<bool>,
+}
+
+/// Samples of the wave by slot: they keep their place while paths move.
+#[derive(Debug, Default)]
+pub(super) struct Slots {
+    /// Key of the pixel's random numbers.
+    pub(super) key: Vec<u32>,
+    /// Sample index.
+    pub(super) sample: Vec<u32>,
+    /// Radiance gathered so far.
+    pub(super) radiance: [Vec<f32>; 3],
+    /// Albedo, shading normal, geometric normal of the first hit; empty unless asked for.
+    pub(super) features: [[Vec<f32>; 3]; 3],
+    /// Depth of the first hit along the view axis in scene units, +∞ for none; empty unless asked for.
+    pub(super) depth: Vec<f32>,
+}
+
+/// All buffers of a worker; reused from wave to wave.
+#[derive(Debug, Default)]
+pub(super) struct Wave {
+    pub(super) paths: Paths,
+    pub(super) hits: Hits,
+    pub(super) surfaces: Surfaces,
+    pub(super) shadows: Shadows,
+    pub(super) slots: Slots,
+    /// Paths by kind of scattering, filled by the sort stage.
+    pub(super) by_scatter: [Vec<u32>; 6],
+    /// Whether path i goes on.
+    pub(super) alive: Vec<bool>,
+}
+
+impl Paths {
+    pub(super) fn len(&self) -> usize {
+        self.slot.len()
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.rays.clear();
+        self.throughput.iter_mut().for_each(Vec::clear);
+        self.pdf.clear();
+        self.eta2.clear();
+        self.slot.clear();
+    }
+
+    /// Appends the start of a path.
+    pub(super) fn push(&mut self, origin: Vec3, dir: Vec3, slot: u32) {
+        self.rays.push(origin.to_array(), dir.to_array(), f32::MAX);
+        self.throughput.iter_mut().for_each(|c| c.push(1.0));
+        self.pdf.push(0.0);
+        self.eta2.push(1.0);
+        self.slot.push(slot);
+    }
+
+    /// Keeps the paths that `alive` says, in order.
+    pub(super) fn compact(&mut self, alive: &[bool]) {
+        let floats = self
+            .rays
+            .origin
+            .iter_mut()
+            .chain(&mut self.rays.dir)
+            .chain(&mut self.throughput);
+        for array in floats.chain([&mut self.rays.t_max, &mut self.pdf, &mut self.eta2]) {
+            keep(array, alive);
+        }
+        keep(&mut self.slot, alive);
+    }
+}
+
+fn keep<T: Copy>(array: &mut Vec<T>, alive: &[bool]) {
+    let mut n = 0;
+    for (i, &alive) in alive.iter().enumerate() {
+        array[n] = array[i];
+        n += usize::from(alive);
+    }
+    array.truncate(n);
+}
+
+impl Surfaces {
+    pub(super) fn resize(&mut self, n: usize) {
+        let vectors = self
+            .position
+            .iter_mut()
+            .chain(&mut self.ng)
+            .chain(&mut self.ns)
+            .chain(&mut self.color);
+        vectors.chain(&mut self.uv).for_each(|a| a.resize(n, 0.0));
+        self.material.resize(n, 0);
+    }
+}
+
+impl Shadows {
+    pub(super) fn clear(&mut self) {
+        self.rays.clear();
+        self.radiance.iter_mut().for_each(Vec::clear);
+        self.slot.clear();
+    }
+
+    pub(super) fn push(&mut self, origin: Vec3, dir: Vec3, t_max: f32, radiance: Vec3, slot: u32) {
+        self.rays.push(origin.to_array(), dir.to_array(), t_max);
+        for (array, value) in self.radiance.iter_mut().zip(radiance.to_array()) {
+            array.push(value);
+        }
+        self.slot.push(slot);
+    }
+}
+
+impl Slots {
+    /// Makes room for n samples and forgets the old ones.
+    pub(super) fn reset(&mut self, n: usize, features: bool) {
+        self.key.clear();
+        self.sample.clear();
+        let fill = |a: &mut Vec<f32>, n: usize, value: f32| {
+            a.clear();
+            a.resize(n, value);
+        };
+        self.radiance.iter_mut().for_each(|a| fill(a, n, 0.0));
+        let n = if features { n } else { 0 };
+        self.features
+            .iter_mut()
+            .flatten()
+            .for_each(|a| fill(a, n, 0.0));
+        fill(&mut self.depth, n, f32::INFINITY);
+    }
+
+    /// Adds radiance to a sample.
+    #[inline(always)]
+    pub(super) fn add(&mut self, slot: usize, radiance: Vec3) {
+        let sum = get(&self.radiance, slot) + radiance;
+        set(&mut self.radiance, slot, sum);
+    }
+}
