@@ -1,9 +1,62 @@
 //! luxel: a data-oriented, ECS-style scene renderer. A CPU path tracer.
 //!
+//! People author a scene as a list of entities, render it, render animations of rotating meshes frame by frame, and
+//! benchmark the structure-of-arrays traversal underneath. This page is the architecture document.
+//!
+//! # The way of the data
+//!
 //! ```text
-//!  scene file ──▶ SceneDesc ──▶ hecs::World(+AssetStore) ──▶ Extracted ──▶ FlatScene ──▶ pixel slices ──▶ Film ──▶ PNG/EXR
+//!  scene file ──▶ SceneDesc ──▶ hecs::World(+AssetStore) ──▶ Extracted ──▶ FlatScene ──▶ pixel sums ──▶ Film ──▶ PNG/EXR
 //!    (RON)        scene/          world/   (time t)           build/         flat/         trace/         film/
 //! ```
+//!
+//! One direction, one type at every door, nothing flows back. [`render`] drives it; the command line calls [`render`].
+//!
+//! | module | takes | gives | never knows |
+//! |---|---|---|---|
+//! | [`scene`] | text | [`scene::SceneDesc`]: every default and unit; errors with line and column | hecs, pixels |
+//! | [`asset`] | paths, bytes | [`asset::Mesh`] in f64, [`asset::Texture`], in an immutable [`asset::AssetStore`] | the scene |
+//! | [`world`] | a `SceneDesc` | a `hecs::World` of components; poses at a time | kernels |
+//! | [`build`] | `&World` | [`flat::FlatScene`]: extract, flatten, tree, linearize | files, pixels |
+//! | [`flat`] | | **data only**: lane blocks, cold shading arrays, materials, lights, camera, tree, needs | hecs, io, rayon |
+//! | [`trace`] | `&FlatScene` | sums of radiance samples of a tile; infallible loops over SoA path state | hecs, files, rayon |
+//! | [`film`] | sums | statistics, tone mapping, writers | scenes |
+//! | [`render`] | world, settings | drives build → trace → film over tiles and frames | |
+//! | [`check`] | a `SceneDesc` | every diagnostic at once | pixels |
+//! | [`diag`] | | **data only**: a diagnostic | everything else |
+//! | [`math`] | | vectors, boxes, lanes, functions with fixed bits | everything else |
+//!
+//! In one crate nothing stops a module from naming another, so a test (`tests/layering.rs`) reads every path under `src/`
+//! and asserts the edges.
+//!
+//! # Invariants
+//!
+//! 1. **After `build` there are only ids and arrays**: no names, paths, hecs entities or f64 transforms. (Spheres keep f64
+//!    centres and radii beside their f32 boxes, for the final root.)
+//! 2. **A frame is a pure function of (scene, frame number)**; nothing accumulates from frame to frame. Whether a mesh is
+//!    flattened or instanced is decided from the scene alone.
+//! 3. **A sample is a pure function of (scene, frame, pixel, sample index, dimension, seed)**, and a pixel is its samples
+//!    added in f64 in the order of their index. Threads, tile size and order, SIMD width, tree shape and hecs's storage
+//!    order change no bit of the image.
+//! 4. **No absolute epsilon in the geometry.** Each hit carries its own error bound, from which rays leave. A candidate's t is
+//!    clamped into its primitive's own widened slab interval before it is compared by (t, id), and every box on the way
+//!    contains that interval: no ancestor can cull a hit, so the tree's shape cannot matter.
+//! 5. **Transforms compose in f64.** The build rebases by an origin and a power-of-two scale, computed once per scene from
+//!    its authored rest pose, then rounds to f32 once.
+//! 6. **Every choice of speed over accuracy is a named dial**; the default is exact.
+//! 7. **A scene pays only for what it uses**: the build computes [`flat::Needs`], which selects the stages. Only traversal is
+//!    const-generic.
+//!
+//! # Why an ECS
+//!
+//! hecs serves authoring and animation: an entity is an open set of components, parents move children, and what moved can
+//! be told. It does not make tracing faster: before the first ray, everything is copied into flat arrays, and `render`
+//! prints what that costs. If a scene had few kinds of entities and never moved, a struct of `Vec`s would do.
+//!
+//! # Departures from the first design
+//!
+//! * `--fresnel` also takes `off` (dielectrics reflect only totally), since the report that luxel began with shows its glass
+//!   without and with Fresnel reflection.
 
 pub mod asset;
 pub mod build;

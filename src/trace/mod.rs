@@ -17,6 +17,8 @@ mod sampler;
 mod scatter;
 pub mod spawn;
 mod surface;
+#[cfg(test)]
+mod test_support;
 pub mod texture;
 pub mod tile;
 mod vector;

@@ -69,6 +69,9 @@ pub(super) fn unit(v: Vec3) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::trace::Sampler;
+    use crate::trace::sampler::{Pair, sample_pair};
+    use crate::trace::test_support::chi_squared;
 
     #[test]
     fn basis_is_orthonormal() {
@@ -112,6 +115,27 @@ mod tests {
                 (f64::from(count) / f64::from(n) - 0.1).abs() < 2e-3,
                 "{rings:?}"
             );
+        }
+    }
+
+    /// In (1 − cos²θ, φ) a cosine-weighted direction is uniform.
+    #[test]
+    fn hemisphere_directions_follow_the_cosine() {
+        let n = 200_000;
+        for normal in [Vec3::Z, -Vec3::Z, unit(Vec3::new(0.3, -0.8, 0.1))] {
+            let (s, t) = basis(normal);
+            let points = (0..n).map(|i| {
+                let dir =
+                    cosine_hemisphere(normal, sample_pair(Sampler::Independent, 9, i, Pair::Pixel));
+                let [x, y, z] = [dir.dot(s), dir.dot(t), dir.dot(normal)].map(f64::from);
+                assert!(z >= 0.0 && (dir.length() - 1.0).abs() < 1e-6);
+                [
+                    x * x + y * y,
+                    (y.atan2(x) / std::f64::consts::TAU).rem_euclid(1.0),
+                ]
+            });
+            let z = chi_squared(20, 32, n, points);
+            assert!(z.abs() < 4.0, "z = {z}");
         }
     }
 }
