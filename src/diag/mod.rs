@@ -2,6 +2,8 @@
 //!
 //! Deliberately absent: printing, colours, exit codes.
 
+pub mod codes;
+
 use std::fmt;
 use std::path::PathBuf;
 

@@ -1,7 +1,206 @@
 //! Text to [`SceneDesc`]: the scene format, every default and unit, and errors with their places.
 //!
+//! Enters: a RON file. Leaves: a [`SceneDesc`] whose names resolve and whose numbers are finite and in range, or every
+//! error at once. Stages: `layer` cuts the text with its places, `reader` and `values` know types and ranges,
+//! `settings`, `material`, `entity` and `motion` know the format, `resolve` what concerns several parts.
+//!
 //! Deliberately absent: hecs, pixels, the contents of asset files.
 
+mod entity;
+mod layer;
+mod material;
+mod motion;
+mod reader;
+mod resolve;
 pub mod schema;
+mod settings;
+mod srgb;
+mod syntax;
+mod values;
 
 pub use schema::*;
+
+use crate::diag::{Diagnostic, Severity, codes};
+use entity::RawEntity;
+use layer::{LayerError, Node};
+use reader::{Fields, Reader};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use values::ColorRole;
+
+/// The version of the format that this reader knows.
+pub const VERSION: u32 = 1;
+
+/// A scene file that was read, and what there is to say about it.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// The scene.
+    pub desc: SceneDesc,
+    /// Warnings, in the order of the text.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// Why there is no scene.
+#[derive(Debug, thiserror::Error)]
+pub enum LoadError {
+    /// The file does not exist.
+    #[error("{}: no such file", .0.display())]
+    Missing(PathBuf),
+    /// The file exists but cannot be read.
+    #[error("{}: {source}", .path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// The file is not a scene: every error and warning, in the order of the text.
+    #[error("the scene has errors")]
+    Invalid(Vec<Diagnostic>),
+}
+
+/// Reads and checks a scene file.
+///
+/// # Errors
+/// [`LoadError`]: the file is missing, unreadable, or not a scene.
+pub fn load(path: &Path) -> Result<Loaded, LoadError> {
+    let bytes = std::fs::read(path).map_err(|source| match source.kind() {
+        std::io::ErrorKind::NotFound => LoadError::Missing(path.to_owned()),
+        _ => LoadError::Unreadable {
+            path: path.to_owned(),
+            source,
+        },
+    })?;
+    let text = match std::str::from_utf8(&bytes) {
+        Ok(text) => text,
+        Err(error) => {
+            return Err(LoadError::Invalid(vec![not_text(
+                &bytes,
+                error.valid_up_to(),
+                path,
+            )]));
+        }
+    };
+    parse(text, path)
+        .map(|(desc, warnings)| Loaded { desc, warnings })
+        .map_err(LoadError::Invalid)
+}
+
+/// Reads and checks the text of a scene. `file` is what diagnostics name and what paths are relative to; it is not
+/// opened. Gives the scene and its warnings.
+///
+/// # Errors
+/// Every error of the scene, among its warnings, in the order of the text; of errors of syntax only the first.
+pub fn parse(text: &str, file: &Path) -> Result<(SceneDesc, Vec<Diagnostic>), Vec<Diagnostic>> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    // A comment in the last line needs its line end.
+    let source: Arc<str> = if text.ends_with('\n') {
+        text.into()
+    } else {
+        format!("{text}\n").into()
+    };
+    let reader = Reader::new(&source, file);
+    let desc = match Node::document(&source) {
+        Ok(document) => scene(&reader, document, &source),
+        Err(LayerError::Syntax(error, at)) => {
+            reader.report(syntax::diagnostic(&error, at, &source, file));
+            None
+        }
+        Err(LayerError::OtherKind) => None,
+    };
+    let found = reader.into_found();
+    match desc {
+        Some(desc) if found.iter().all(|d| d.severity == Severity::Warning) => Ok((desc, found)),
+        _ => Err(found),
+    }
+}
+
+fn scene<'a>(reader: &Reader<'a>, document: Node<'a>, source: &Arc<str>) -> Option<SceneDesc> {
+    let body = match document.head() {
+        (Some("Scene"), body) => body,
+        (None, body) => body,
+        (Some(_), _) => return reader.wrong_type(document.head_place(), "the file", "`Scene(..)`"),
+    };
+    let known = [
+        "version",
+        "camera",
+        "render",
+        "background",
+        "materials",
+        "entities",
+        "animation",
+    ];
+    let fields = Fields::read(reader, body, "`Scene`", &known)?;
+    fields.require("version", version);
+    let render = fields.read_or("render", RenderDesc::default(), settings::render);
+    let background = fields.read_or(
+        "background",
+        ColorDesc::Linear(SceneDesc::BACKGROUND),
+        |r, n| r.color(n, "`background`", ColorRole::Background),
+    );
+    let camera = fields.read_if("camera", settings::camera);
+    let materials = fields.read_or("materials", Vec::new(), material::materials);
+    let animation = fields.read_or("animation", AnimationDesc::default(), settings::animation);
+    let mut entities = fields.read_or("entities", Vec::new(), entities);
+    resolve::resolve(reader, &mut entities, &materials);
+    resolve::check_cameras(reader, fields.get("camera"), &entities);
+    let placed = |e: RawEntity<'_>| Placed {
+        value: e.desc,
+        at: e.node.at,
+        len: e.node.text.len(),
+    };
+    Some(SceneDesc {
+        file: reader.file.to_owned(),
+        source: Arc::clone(source),
+        render,
+        background,
+        camera,
+        materials,
+        entities: entities.into_iter().map(placed).collect(),
+        animation,
+    })
+}
+
+fn version<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<()> {
+    let version = reader.whole(node, "`version`", 0, u32::MAX)?;
+    if version != VERSION {
+        let message = format!("version {version} of the scene format is not known");
+        reader.error_hint(
+            codes::UNKNOWN_VERSION,
+            node,
+            message,
+            format!("this program reads version {VERSION}"),
+        );
+    }
+    Some(())
+}
+
+fn entities<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<Vec<RawEntity<'a>>> {
+    let nodes = reader.layer(node, node.list(), "`entities`", "a list [(..), ..]")?;
+    Some(
+        nodes
+            .into_iter()
+            .filter_map(|n| entity::entity(reader, n))
+            .collect(),
+    )
+}
+
+fn not_text(bytes: &[u8], valid: usize, path: &Path) -> Diagnostic {
+    let text = String::from_utf8_lossy(bytes);
+    Diagnostic::error(codes::NOT_TEXT, "the file is not UTF-8 text")
+        .in_file(path)
+        .at(&text, valid, 1)
+        .hint("save it as UTF-8")
+}
+
+impl SceneDesc {
+    /// The bytes (offset and length in [`SceneDesc::source`]) of a component of an entity, such as `"material"`;
+    /// `None` where it is not written.
+    #[must_use]
+    pub fn place(&self, entity: usize, component: &str) -> Option<(usize, usize)> {
+        let Placed { at, len, .. } = *self.entities.get(entity)?;
+        let text = self.source.get(at..at + len)?;
+        let place = entity::component_place(Node { text, at }, component)?;
+        Some((place.at, place.text.len()))
+    }
+}

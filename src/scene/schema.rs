@@ -36,6 +36,11 @@ pub struct SceneDesc {
     pub animation: AnimationDesc,
 }
 
+impl SceneDesc {
+    /// Linear radiance of the background where the scene has none.
+    pub const BACKGROUND: [f64; 3] = [0.0; 3];
+}
+
 /// `render: (..)`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RenderDesc {
@@ -49,6 +54,17 @@ pub struct RenderDesc {
     pub filter: FilterDesc,
 }
 
+impl Default for RenderDesc {
+    fn default() -> Self {
+        RenderDesc {
+            size: (512, 512),
+            spp: 64,
+            max_bounces: 7,
+            filter: FilterDesc::default(),
+        }
+    }
+}
+
 /// Pixel filter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FilterDesc {
@@ -59,6 +75,19 @@ pub enum FilterDesc {
         /// In pixels.
         radius_px: f64,
     },
+}
+
+impl FilterDesc {
+    /// Radius of `Gaussian` where it has none, in pixels.
+    pub const GAUSSIAN_RADIUS_PX: f64 = 1.5;
+}
+
+impl Default for FilterDesc {
+    fn default() -> Self {
+        FilterDesc::Gaussian {
+            radius_px: FilterDesc::GAUSSIAN_RADIUS_PX,
+        }
+    }
 }
 
 /// `camera: (..)` at top level, or on an entity (then without `pose`).
@@ -74,6 +103,26 @@ pub struct CameraDesc {
     pub focus_distance: f64,
 }
 
+impl CameraDesc {
+    /// Vertical field of view where the camera has none, in degrees.
+    pub const VFOV_DEG: f64 = 60.0;
+    /// A pinhole.
+    pub const APERTURE_RADIUS: f64 = 0.0;
+    /// Focus of a camera that looks at no point, in scene units.
+    pub const FOCUS_DISTANCE: f64 = 1.0;
+}
+
+impl Default for CameraDesc {
+    fn default() -> Self {
+        CameraDesc {
+            pose: None,
+            vfov_deg: CameraDesc::VFOV_DEG,
+            aperture_radius: CameraDesc::APERTURE_RADIUS,
+            focus_distance: CameraDesc::FOCUS_DISTANCE,
+        }
+    }
+}
+
 /// `at`, `look_at`, `up` of a camera at top level.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraPose {
@@ -83,6 +132,11 @@ pub struct CameraPose {
     pub look_at: [f64; 3],
     /// What is up in the image. Default (0, 1, 0).
     pub up: [f64; 3],
+}
+
+impl CameraPose {
+    /// `up` where the camera has none.
+    pub const UP: [f64; 3] = [0.0, 1.0, 0.0];
 }
 
 /// A colour: it always says its space.
@@ -172,6 +226,25 @@ pub enum MaterialDesc {
         /// GGX α = roughness².
         roughness: f64,
     },
+}
+
+impl MaterialDesc {
+    /// Linear colour of `Diffuse`, `Plastic` and `Metal` where they have none.
+    pub const DIFFUSE_COLOR: [f64; 3] = [0.8; 3];
+    /// Linear colour of `Mirror` and `Glass` where they have none.
+    pub const CLEAR_COLOR: [f64; 3] = [1.0; 3];
+    /// Index of refraction of `Glass` and `Plastic` where they have none: crown glass, near enough.
+    pub const IOR: f64 = 1.5;
+    /// Roughness of `Metal` where it has none.
+    pub const ROUGHNESS: f64 = 0.0;
+}
+
+impl Default for MaterialDesc {
+    fn default() -> Self {
+        MaterialDesc::Diffuse {
+            color: ColorDesc::Linear(MaterialDesc::DIFFUSE_COLOR),
+        }
+    }
 }
 
 /// An entity: a struct of optional components.
@@ -271,6 +344,11 @@ pub enum NormalsDesc {
         /// Degrees.
         angle_deg: f64,
     },
+}
+
+impl NormalsDesc {
+    /// Angle of `Smooth` where it has none, and of meshes whose file has no normals, in degrees.
+    pub const SMOOTH_ANGLE_DEG: f64 = 60.0;
 }
 
 /// `animation: (fps, frames)`. Default 24 frames a second, frames 0..1.

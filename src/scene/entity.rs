@@ -1,0 +1,190 @@
+//! An entity: a struct of optional components.
+
+use super::layer::Node;
+use super::motion;
+use super::reader::{Fields, Reader};
+use super::schema::{EntityDesc, NormalsDesc, RotateDesc, ShapeDesc, SpinDesc, TransformDesc};
+use super::settings;
+use super::values::Domain;
+use crate::diag::codes;
+
+/// Every component, in the order of the format's description.
+const COMPONENTS: [&str; 13] = [
+    "name",
+    "parent",
+    "shape",
+    "material",
+    "transform",
+    "spin",
+    "keys",
+    "ease",
+    "emissive",
+    "normals",
+    "camera",
+    "light",
+    "gltf",
+];
+
+/// An entity whose names are not resolved yet.
+pub(super) struct RawEntity<'a> {
+    /// Without `parent` and `material`.
+    pub(super) desc: EntityDesc,
+    pub(super) node: Node<'a>,
+    pub(super) name: Option<Node<'a>>,
+    pub(super) parent: Option<(String, Node<'a>)>,
+    pub(super) material: Option<(String, Node<'a>)>,
+    pub(super) shape: Option<Node<'a>>,
+    pub(super) camera: Option<Node<'a>>,
+    pub(super) emissive: Option<Node<'a>>,
+    pub(super) normals: Option<Node<'a>>,
+    /// The file's nodes stand for shapes.
+    pub(super) has_file: bool,
+}
+
+/// The place of a component of the entity that is written at `node`.
+pub(super) fn component_place<'a>(node: Node<'a>, component: &str) -> Option<Node<'a>> {
+    let fields = node.fields().ok()?;
+    fields
+        .iter()
+        .find(|pair| pair.key.text == component)
+        .map(|pair| pair.value)
+}
+
+pub(super) fn entity<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<RawEntity<'a>> {
+    let fields = Fields::read(reader, node, "an entity", &COMPONENTS)?;
+    motion::refuse(&fields);
+    let reference =
+        |name: &str, what: &str| fields.read_if(name, |r, n| Some((r.string(n, what)?, n)));
+    let desc = EntityDesc {
+        name: fields.read_if("name", |r, n| r.string(n, "`name`")),
+        parent: None,
+        shape: fields.read_if("shape", shape),
+        material: None,
+        transform: fields.read_or("transform", TransformDesc::default(), transform),
+        spin: fields.read_if("spin", spin),
+        emissive: fields.read_if("emissive", emissive),
+        normals: fields.read_if("normals", normals),
+        camera: fields.read_if("camera", settings::entity_camera),
+    };
+    Some(RawEntity {
+        desc,
+        node,
+        name: fields.get("name"),
+        parent: reference("parent", "`parent`"),
+        material: reference("material", "`material`"),
+        shape: fields.get("shape"),
+        camera: fields.get("camera"),
+        emissive: fields.get("emissive"),
+        normals: fields.get("normals"),
+        has_file: fields.get("gltf").is_some(),
+    })
+}
+
+fn shape<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<ShapeDesc> {
+    let (variant, body) = reader.variant(node, "`shape`", &["Sphere", "Mesh"])?;
+    if variant == "Mesh" {
+        let path = reader.single(body, "Mesh", "Mesh(\"file\")")?;
+        return reader.path(path, "the mesh").map(ShapeDesc::Mesh);
+    }
+    let fields = Fields::read(reader, body, "`Sphere`", &["radius", "inverted"])?;
+    let radius = fields.require("radius", |r, n| r.number(n, "`radius`", Domain::Positive));
+    let inverted = fields.read_or("inverted", false, |r, n| r.truth(n, "`inverted`"));
+    Some(ShapeDesc::Sphere {
+        radius: radius?,
+        inverted,
+    })
+}
+
+fn transform<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<TransformDesc> {
+    let fields = Fields::read(
+        reader,
+        node,
+        "`transform`",
+        &["translate", "rotate", "scale"],
+    )?;
+    let default = TransformDesc::default();
+    Some(TransformDesc {
+        translate: fields.read_or("translate", default.translate, translate),
+        rotate: fields.read_or("rotate", default.rotate, rotate),
+        scale: fields.read_or("scale", default.scale, scale),
+    })
+}
+
+pub(super) fn translate<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<[f64; 3]> {
+    reader.vector(node, "`translate`", Domain::Any)
+}
+
+/// A number or a triple.
+pub(super) fn scale<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<[f64; 3]> {
+    let scale = if node.text.starts_with('(') {
+        reader.vector(node, "`scale`", Domain::Any)?
+    } else if node.literal::<f64>().is_ok() {
+        [reader.number(node, "`scale`", Domain::Any)?; 3]
+    } else {
+        return reader.wrong_type(node, "`scale`", "a number or three numbers in parentheses");
+    };
+    if scale.contains(&0.0) {
+        reader.error(
+            codes::ZERO_SCALE,
+            node,
+            "a `scale` of 0 flattens the entity",
+        );
+        return None;
+    }
+    Some(scale)
+}
+
+pub(super) fn rotate<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<RotateDesc> {
+    let (variant, body) = reader.variant(node, "`rotate`", &["Euler", "AxisAngle", "Quat"])?;
+    match variant {
+        "Euler" => reader
+            .vector(body, "`Euler`", Domain::Any)
+            .map(RotateDesc::Euler),
+        "Quat" => reader.direction(body, "`Quat`").map(RotateDesc::Quat),
+        _ => {
+            let fields = Fields::read(reader, body, "`AxisAngle`", &["axis", "deg"])?;
+            let axis = fields.require("axis", |r, n| r.direction(n, "`axis`"));
+            let deg = fields.require("deg", |r, n| r.number(n, "`deg`", Domain::Any));
+            Some(RotateDesc::AxisAngle {
+                axis: axis?,
+                deg: deg?,
+            })
+        }
+    }
+}
+
+fn spin<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<SpinDesc> {
+    let fields = Fields::read(reader, node, "`spin`", &["axis", "deg_per_s", "pivot"])?;
+    let axis = fields.require("axis", |r, n| r.direction(n, "`axis`"));
+    let deg_per_s = fields.require("deg_per_s", |r, n| r.number(n, "`deg_per_s`", Domain::Any));
+    let pivot = fields.read_if("pivot", |r, n| r.vector(n, "`pivot`", Domain::Any));
+    Some(SpinDesc {
+        axis: axis?,
+        deg_per_s: deg_per_s?,
+        pivot,
+    })
+}
+
+fn emissive<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<[f64; 3]> {
+    let fields = Fields::read(reader, node, "`emissive`", &["radiance"])?;
+    fields.require("radiance", |r, n| {
+        r.vector(n, "`radiance`", Domain::NonNegative)
+    })
+}
+
+fn normals<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<NormalsDesc> {
+    let (variant, body) = reader.variant(node, "`normals`", &["File", "Flat", "Smooth"])?;
+    if variant == "Smooth" {
+        let fields = Fields::read(reader, body, "`Smooth`", &["angle_deg"])?;
+        let angle_deg = fields.read_or("angle_deg", NormalsDesc::SMOOTH_ANGLE_DEG, |r, n| {
+            r.number(n, "`angle_deg`", Domain::UpTo(180.0))
+        });
+        return Some(NormalsDesc::Smooth { angle_deg });
+    }
+    reader.no_fields(body, variant)?;
+    Some(if variant == "File" {
+        NormalsDesc::File
+    } else {
+        NormalsDesc::Flat
+    })
+}

@@ -1,0 +1,282 @@
+//! Structs, variants and references over [`Node`]s: what is missing, unknown or given twice is reported with its place.
+//!
+//! A reader returns `None` when it has reported an error; the caller goes on, so that every error is found.
+
+use super::layer::{LayerError, Node, Pair};
+use super::syntax;
+use crate::diag::{Diagnostic, codes};
+use std::cell::RefCell;
+use std::path::Path;
+
+/// The file being read and what was found in it.
+pub(super) struct Reader<'a> {
+    pub(super) source: &'a str,
+    pub(super) file: &'a Path,
+    found: RefCell<Vec<Diagnostic>>,
+}
+
+impl<'a> Reader<'a> {
+    pub(super) fn new(source: &'a str, file: &'a Path) -> Reader<'a> {
+        Reader {
+            source,
+            file,
+            found: RefCell::default(),
+        }
+    }
+
+    pub(super) fn report(&self, diagnostic: Diagnostic) {
+        self.found.borrow_mut().push(diagnostic);
+    }
+
+    /// An error at `place`.
+    pub(super) fn error(&self, code: &'static str, place: Node<'_>, message: impl Into<String>) {
+        self.report(self.diagnostic(code, place, message));
+    }
+
+    /// An error at `place` with what to do about it.
+    pub(super) fn error_hint(
+        &self,
+        code: &'static str,
+        place: Node<'_>,
+        message: impl Into<String>,
+        hint: impl Into<String>,
+    ) {
+        self.report(self.diagnostic(code, place, message).hint(hint));
+    }
+
+    pub(super) fn diagnostic(
+        &self,
+        code: &'static str,
+        place: Node<'_>,
+        message: impl Into<String>,
+    ) -> Diagnostic {
+        Diagnostic::error(code, message).in_file(self.file).at(
+            self.source,
+            place.at,
+            place.text.len(),
+        )
+    }
+
+    /// Line of a place, from 1.
+    pub(super) fn line(&self, place: Node<'_>) -> usize {
+        self.source[..place.at].matches('\n').count() + 1
+    }
+
+    /// Everything found, in the order of the text; what has no place comes last.
+    pub(super) fn into_found(self) -> Vec<Diagnostic> {
+        let mut found = self.found.into_inner();
+        found.sort_by_key(|d| {
+            d.span
+                .as_ref()
+                .map_or((u32::MAX, 0), |s| (s.line, s.column))
+        });
+        found
+    }
+
+    /// Unwraps a layer, or reports that `name` must be `wanted`.
+    pub(super) fn layer<T>(
+        &self,
+        node: Node<'a>,
+        layer: Result<T, LayerError>,
+        name: &str,
+        wanted: &str,
+    ) -> Option<T> {
+        match layer {
+            Ok(parts) => Some(parts),
+            Err(LayerError::OtherKind) => self.wrong_type(node, name, wanted),
+            Err(LayerError::Syntax(error, at)) => {
+                self.report(syntax::diagnostic(&error, at, self.source, self.file));
+                None
+            }
+        }
+    }
+
+    /// Reports that `name` must be `wanted`.
+    pub(super) fn wrong_type<T>(&self, node: Node<'_>, name: &str, wanted: &str) -> Option<T> {
+        self.error(
+            codes::WRONG_TYPE,
+            node,
+            format!("{name} must be {wanted}, found {}", node.kind()),
+        );
+        None
+    }
+
+    /// Splits a variant into its name, one of `known`, and what follows it.
+    pub(super) fn variant(
+        &self,
+        node: Node<'a>,
+        name: &str,
+        known: &[&'static str],
+    ) -> Option<(&'static str, Node<'a>)> {
+        let (Some(found), body) = node.head() else {
+            return self.wrong_type(node, name, &format!("one of {}", known.join(", ")));
+        };
+        if let Some(&variant) = known.iter().find(|&&k| k == found) {
+            return Some((variant, body));
+        }
+        self.error_hint(
+            codes::UNKNOWN_VARIANT,
+            node.head_place(),
+            format!("there is no `{found}` for {name}"),
+            suggest(found, known.iter().copied()).map_or_else(
+                || format!("it is one of {}", known.join(", ")),
+                |best| format!("did you mean `{best}`?"),
+            ),
+        );
+        None
+    }
+
+    /// Reports what follows a variant that has no fields.
+    pub(super) fn no_fields(&self, body: Node<'a>, variant: &str) -> Option<()> {
+        let empty = self.layer(
+            body,
+            body.fields(),
+            &format!("`{variant}`"),
+            "without values",
+        )?;
+        match empty.first() {
+            None => Some(()),
+            Some(pair) => {
+                self.error(
+                    codes::UNKNOWN_FIELD,
+                    pair.key,
+                    format!("`{variant}` has no fields"),
+                );
+                None
+            }
+        }
+    }
+}
+
+/// The fields of a struct or of a variant, all known and none given twice.
+pub(super) struct Fields<'r, 'a> {
+    pub(super) reader: &'r Reader<'a>,
+    node: Node<'a>,
+    what: &'static str,
+    pairs: Vec<Pair<'a>>,
+}
+
+impl<'r, 'a> Fields<'r, 'a> {
+    /// The fields of `node`, which `what` names in messages: "`Glass`", "an entity".
+    pub(super) fn read(
+        reader: &'r Reader<'a>,
+        node: Node<'a>,
+        what: &'static str,
+        known: &[&'static str],
+    ) -> Option<Fields<'r, 'a>> {
+        let wanted = format!("written with named fields ({})", known.join(", "));
+        let pairs = reader.layer(node, node.fields(), what, &wanted)?;
+        let mut kept: Vec<Pair<'a>> = Vec::with_capacity(pairs.len());
+        for pair in pairs {
+            let key = pair.key.text;
+            if !known.contains(&key) {
+                let hint = suggest(key, known.iter().copied()).map_or_else(
+                    || format!("its fields are {}", known.join(", ")),
+                    |best| format!("did you mean `{best}`?"),
+                );
+                reader.error_hint(
+                    codes::UNKNOWN_FIELD,
+                    pair.key,
+                    format!("{what} has no field `{key}`"),
+                    hint,
+                );
+            } else if let Some(first) = kept.iter().find(|p| p.key.text == key) {
+                let line = reader.line(first.key);
+                reader.error_hint(
+                    codes::DUPLICATE_FIELD,
+                    pair.key,
+                    format!("`{key}` is given twice"),
+                    format!("the first one is in line {line}"),
+                );
+            } else {
+                kept.push(pair);
+            }
+        }
+        Some(Fields {
+            reader,
+            node,
+            what,
+            pairs: kept,
+        })
+    }
+
+    /// The value of a field that is there and not `None`; `Some` around it is taken off.
+    pub(super) fn get(&self, name: &str) -> Option<Node<'a>> {
+        let value = self.pairs.iter().find(|p| p.key.text == name)?.value;
+        match value.head() {
+            (Some("None"), _) => None,
+            (Some("Some"), body) => match body.tuple().as_deref() {
+                Ok([inner]) => Some(*inner),
+                _ => Some(value),
+            },
+            _ => Some(value),
+        }
+    }
+
+    /// The name of a field that is there, for a place.
+    pub(super) fn key(&self, name: &str) -> Option<Node<'a>> {
+        self.get(name)?;
+        self.pairs.iter().map(|p| p.key).find(|k| k.text == name)
+    }
+
+    /// Reads a field if it is there.
+    pub(super) fn read_if<T>(
+        &self,
+        name: &str,
+        read: impl FnOnce(&Reader<'a>, Node<'a>) -> Option<T>,
+    ) -> Option<T> {
+        read(self.reader, self.get(name)?)
+    }
+
+    /// Reads a field, or takes its default.
+    pub(super) fn read_or<T>(
+        &self,
+        name: &str,
+        default: T,
+        read: impl FnOnce(&Reader<'a>, Node<'a>) -> Option<T>,
+    ) -> T {
+        self.read_if(name, read).unwrap_or(default)
+    }
+
+    /// Reads a field that has no default.
+    pub(super) fn require<T>(
+        &self,
+        name: &str,
+        read: impl FnOnce(&Reader<'a>, Node<'a>) -> Option<T>,
+    ) -> Option<T> {
+        let Some(node) = self.get(name) else {
+            let place = if self.node.text.is_empty() {
+                Node {
+                    at: self.node.at.saturating_sub(1),
+                    ..self.node
+                }
+            } else {
+                self.node
+            };
+            self.reader.error(
+                codes::MISSING_FIELD,
+                place,
+                format!("{} needs `{name}`", self.what),
+            );
+            return None;
+        };
+        read(self.reader, node)
+    }
+}
+
+/// The name among `known` that `found` was probably meant to be.
+pub(super) fn suggest<'n>(
+    found: &str,
+    known: impl IntoIterator<Item = &'n str>,
+) -> Option<&'n str> {
+    /// One slip per so many letters is still taken for the same word.
+    const LETTERS_PER_SLIP: usize = 3;
+    let lower = found.to_lowercase();
+    let slips = (lower.chars().count() / LETTERS_PER_SLIP).max(1);
+    known
+        .into_iter()
+        .map(|name| (strsim::osa_distance(&lower, &name.to_lowercase()), name))
+        .filter(|&(distance, _)| distance <= slips)
+        .min_by_key(|&(distance, _)| distance)
+        .map(|(_, name)| name)
+}

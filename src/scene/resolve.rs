@@ -1,0 +1,211 @@
+//! What concerns several parts of a scene: names and who they mean, parents, the one camera, spheres under scales.
+
+use super::entity::RawEntity;
+use super::layer::Node;
+use super::reader::{Reader, suggest};
+use super::schema::{NamedMaterial, ShapeDesc};
+use crate::diag::{Diagnostic, codes};
+use std::collections::BTreeMap;
+
+/// Reports duplicate names; fills the parents and materials; then checks what depends on them.
+pub(super) fn resolve(
+    reader: &Reader<'_>,
+    entities: &mut [RawEntity<'_>],
+    materials: &[NamedMaterial],
+) {
+    let names = entity_names(reader, entities);
+    for entity in &mut *entities {
+        if let Some((name, place)) = &entity.parent {
+            entity.desc.parent = names.get(name).copied();
+            if entity.desc.parent.is_none() {
+                unknown(
+                    reader,
+                    *place,
+                    &format!("entity named {name:?}"),
+                    suggest(name, names.keys().map(String::as_str)),
+                );
+            }
+        }
+        if let Some((name, place)) = &entity.material {
+            entity.desc.material = materials.iter().position(|m| &m.name == name);
+            if entity.desc.material.is_none() {
+                let best = suggest(name, materials.iter().map(|m| m.name.as_str()));
+                unknown(reader, *place, &format!("material {name:?}"), best);
+            }
+        }
+        check_components(reader, entity);
+    }
+    break_cycles(reader, entities);
+    for i in 0..entities.len() {
+        check_sphere(reader, entities, i);
+    }
+}
+
+/// Index of each name; the first entity of a name has it.
+fn entity_names(reader: &Reader<'_>, entities: &[RawEntity<'_>]) -> BTreeMap<String, usize> {
+    let mut names = BTreeMap::new();
+    for (i, entity) in entities.iter().enumerate() {
+        let (Some(name), Some(place)) = (&entity.desc.name, entity.name) else {
+            continue;
+        };
+        if let Some(&first) = names.get(name) {
+            let first: &RawEntity<'_> = &entities[first];
+            let line = reader.line(first.name.unwrap_or(first.node));
+            let message = format!("the entity {name:?} is given twice");
+            reader.error_hint(
+                codes::DUPLICATE_NAME,
+                place,
+                message,
+                format!("the first one is in line {line}"),
+            );
+        } else {
+            names.insert(name.clone(), i);
+        }
+    }
+    names
+}
+
+fn unknown(reader: &Reader<'_>, place: Node<'_>, what: &str, best: Option<&str>) {
+    let message = format!("there is no {what}");
+    match best {
+        Some(best) => reader.error_hint(
+            codes::UNKNOWN_NAME,
+            place,
+            message,
+            format!("did you mean {best:?}?"),
+        ),
+        None => reader.error(codes::UNKNOWN_NAME, place, message),
+    }
+}
+
+/// Components that need another one.
+fn check_components(reader: &Reader<'_>, entity: &RawEntity<'_>) {
+    let shapeless = entity.shape.is_none() && !entity.has_file;
+    if let (Some(place), true) = (entity.emissive, shapeless) {
+        reader.error_hint(
+            codes::DARK_EMITTER,
+            place,
+            "`emissive` needs a `shape` that shines",
+            "add a `shape`",
+        );
+    }
+    if let (Some((_, place)), true) = (&entity.material, shapeless) {
+        warn(
+            reader,
+            codes::IDLE_MATERIAL,
+            *place,
+            "`material` has no effect on an entity without a `shape`",
+        );
+    }
+    let is_mesh = entity.has_file || entity.shape.is_some_and(|s| s.text.starts_with("Mesh"));
+    if let (Some(place), false) = (entity.normals, is_mesh) {
+        warn(
+            reader,
+            codes::IDLE_NORMALS,
+            place,
+            "`normals` has no effect on an entity without a mesh",
+        );
+    }
+}
+
+fn warn(reader: &Reader<'_>, code: &'static str, place: Node<'_>, message: &str) {
+    let error = reader.diagnostic(code, place, message);
+    reader.report(Diagnostic {
+        severity: crate::diag::Severity::Warning,
+        ..error
+    });
+}
+
+/// Reports each cycle of parents once, naming its members, and cuts it.
+fn break_cycles(reader: &Reader<'_>, entities: &mut [RawEntity<'_>]) {
+    let mut rooted = vec![false; entities.len()];
+    for start in 0..entities.len() {
+        let mut chain = Vec::new();
+        let mut next = Some(start);
+        while let Some(i) = next.filter(|&i| !rooted[i]) {
+            if let Some(first) = chain.iter().position(|&c| c == i) {
+                report_cycle(reader, entities, &chain[first..]);
+                entities[i].desc.parent = None;
+                break;
+            }
+            chain.push(i);
+            next = entities[i].desc.parent;
+        }
+        chain.into_iter().for_each(|i| rooted[i] = true);
+    }
+}
+
+fn report_cycle(reader: &Reader<'_>, entities: &[RawEntity<'_>], cycle: &[usize]) {
+    let first = &entities[cycle[0]];
+    let chain: Vec<String> = cycle
+        .iter()
+        .chain(cycle.first())
+        .map(|&i| format!("{:?}", entities[i].desc.name.as_deref().unwrap_or_default()))
+        .collect();
+    let place = first
+        .parent
+        .as_ref()
+        .map_or(first.node, |(_, place)| *place);
+    reader.error(
+        codes::PARENT_CYCLE,
+        place,
+        format!("parents in a circle: {}", chain.join(" -> ")),
+    );
+}
+
+/// A sphere must stay a sphere.
+fn check_sphere(reader: &Reader<'_>, entities: &[RawEntity<'_>], index: usize) {
+    let sphere = &entities[index];
+    let (Some(ShapeDesc::Sphere { .. }), Some(place)) = (&sphere.desc.shape, sphere.shape) else {
+        return;
+    };
+    let mut next = Some(index);
+    while let Some(i) = next {
+        let [x, y, z] = entities[i].desc.transform.scale;
+        if x.abs() != y.abs() || y.abs() != z.abs() {
+            let whose = if i == index {
+                "its own".to_owned()
+            } else {
+                format!("the ancestor {:?}'s", label(&entities[i]))
+            };
+            let message = format!(
+                "the sphere {:?} is stretched by {whose} non-uniform scale ({x}, {y}, {z})",
+                label(sphere)
+            );
+            reader.error_hint(
+                codes::STRETCHED_SPHERE,
+                place,
+                message,
+                "scale it by one number, or use a mesh",
+            );
+            return;
+        }
+        next = entities[i].desc.parent;
+    }
+}
+
+fn label<'e>(entity: &'e RawEntity<'_>) -> &'e str {
+    entity.desc.name.as_deref().unwrap_or("without a name")
+}
+
+/// One camera, at top level or on one entity.
+pub(super) fn check_cameras(
+    reader: &Reader<'_>,
+    top: Option<Node<'_>>,
+    entities: &[RawEntity<'_>],
+) {
+    let mut cameras = top
+        .into_iter()
+        .chain(entities.iter().filter_map(|e| e.camera));
+    let Some(first) = cameras.next() else {
+        let hint = "add `camera: (at: (0, 0, 5), look_at: (0, 0, 0))` at top level";
+        let missing = Diagnostic::error(codes::NO_CAMERA, "the scene has no camera");
+        reader.report(missing.in_file(reader.file).hint(hint));
+        return;
+    };
+    let line = reader.line(first);
+    for other in cameras {
+        let message = format!("a second camera; the first is in line {line}");
+        reader.error_hint(codes::TWO_CAMERAS, other, message, "keep one of them");
+    }
+}
