@@ -1,6 +1,26 @@
 //! Files to arrays: meshes (OBJ with MTL) and textures, behind ids in an immutable store.
 //!
+//! Stage two. Enter: paths that a scene names. Leave: an immutable [`AssetStore`] and ids into it, or diagnostics with
+//! file and line.
+//!
+//! ```text
+//!  OBJ ─▶ text ─▶ scan (lines, indices, groups of equal attributes) ─▶ tobj ─▶ obj (triangles in file order) ─▶ Mesh
+//!  MTL ─▶ text ─▶ mtl ─▶ MeshMaterial        PNG, JPEG ─▶ texture ─▶ Texture
+//! ```
+//!
 //! Deliberately absent: the scene, the world, pixels of the film.
+
+pub mod codes;
+mod loader;
+mod mtl;
+pub mod normals;
+mod obj;
+mod scan;
+mod text;
+mod texture;
+mod triangulate;
+
+pub use loader::Loader;
 
 use crate::math::{DVec2, DVec3};
 use std::path::PathBuf;
@@ -102,6 +122,10 @@ pub struct AssetStore {
     pub meshes: Vec<Arc<Mesh>>,
     /// Behind [`TextureId`].
     pub textures: Vec<Arc<Texture>>,
+    /// Behind [`AssetStore::hash`].
+    content_hash: [u8; 32],
+    /// Behind [`AssetStore::bytes`].
+    bytes: u64,
 }
 
 impl AssetStore {
@@ -109,6 +133,19 @@ impl AssetStore {
     #[must_use]
     pub fn mesh(&self, id: MeshId) -> &Arc<Mesh> {
         &self.meshes[id.0 as usize]
+    }
+
+    /// SHA-256 over the SHA-256 of every file that was read, in the order of reading, which the scene decides. Paths do
+    /// not enter, so that a moved scene keeps its hash; the order does, so that two files that change places change it.
+    #[must_use]
+    pub fn hash(&self) -> [u8; 32] {
+        self.content_hash
+    }
+
+    /// Bytes of all the files that were read.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        self.bytes
     }
 
     /// The texture of an id of this store.

@@ -1,0 +1,227 @@
+//! MTL text to materials: our own reader, since the parser's panics on legal files and knows no lines.
+//!
+//! Read: `newmtl`, `Kd`, `map_Kd`, `Ke`. What else changes the look is remembered, to be told of when the material is
+//! used.
+
+use super::codes;
+use super::scan::at_line;
+use super::text::{Line, Lines};
+use crate::diag::Diagnostic;
+
+/// A material as an MTL file has it.
+pub(super) struct Definition {
+    pub(super) name: String,
+    /// Byte offset of its `newmtl` line.
+    pub(super) at: usize,
+    /// `Kd`, linear.
+    pub(super) color: Option<[f64; 3]>,
+    /// `map_Kd`: the path as written, and the byte offset of the line.
+    pub(super) texture: Option<(String, usize)>,
+    /// `Ke`, linear.
+    pub(super) emission: [f64; 3],
+    /// Keywords that change the look and are not modelled, with the byte offset of their line.
+    pub(super) not_modelled: Vec<(String, usize)>,
+}
+
+/// Keywords that change nothing luxel shows: ambient colour, exponents of absent highlights, indices of refraction of
+/// opaque materials.
+const WITHOUT_EFFECT: [&str; 10] = [
+    "Ka",
+    "Ns",
+    "Ni",
+    "map_Ka",
+    "map_Ns",
+    "sharpness",
+    "map_aat",
+    "Km",
+    "aniso",
+    "anisor",
+];
+
+/// Highest illumination model that has neither reflection nor transparency.
+const LAST_PLAIN_MODEL: f64 = 2.0;
+
+/// Options of a texture line, with the greatest number of values that each takes.
+const OPTIONS: [(&str, usize); 14] = [
+    ("-blendu", 1),
+    ("-blendv", 1),
+    ("-bm", 1),
+    ("-boost", 1),
+    ("-cc", 1),
+    ("-clamp", 1),
+    ("-colorspace", 1),
+    ("-imfchan", 1),
+    ("-mm", 2),
+    ("-o", 3),
+    ("-s", 3),
+    ("-t", 3),
+    ("-texres", 1),
+    ("-type", 1),
+];
+
+/// Options whose values are between one and three numbers.
+const VECTOR_OPTIONS: [&str; 3] = ["-o", "-s", "-t"];
+
+/// Reads the materials of an MTL file, in file order.
+///
+/// # Errors
+/// Values that cannot be read or are impossible, all at once, each with its line.
+pub(super) fn read(source: &str) -> Result<Vec<Definition>, Vec<Diagnostic>> {
+    let mut definitions: Vec<Definition> = Vec::new();
+    let mut errors = Vec::new();
+    for line in Lines::of(source) {
+        if line.keyword == "newmtl" {
+            definitions.push(Definition::new(&line));
+        } else if let Some(definition) = definitions.last_mut() {
+            if let Err(says) = definition.line(&line) {
+                let error = Diagnostic::error(codes::BAD_MATERIAL, says);
+                errors.push(at_line(error, source, line.at));
+            }
+        }
+    }
+    if errors.is_empty() {
+        Ok(definitions)
+    } else {
+        errors.truncate(super::scan::MAX_ERRORS);
+        Err(errors)
+    }
+}
+
+impl Definition {
+    fn new(line: &Line<'_>) -> Definition {
+        Definition {
+            name: line.rest.trim_end().to_owned(),
+            at: line.at,
+            color: None,
+            texture: None,
+            emission: [0.0; 3],
+            not_modelled: Vec::new(),
+        }
+    }
+
+    fn line(&mut self, line: &Line<'_>) -> Result<(), String> {
+        match line.keyword {
+            "Kd" => self.color = Some(color(line)?),
+            "Ke" => self.emission = color(line)?,
+            "map_Kd" => {
+                let (path, options) = texture_path(&line.rest);
+                let options = options
+                    .into_iter()
+                    .map(|option| (format!("map_Kd {option}"), line.at));
+                self.not_modelled.extend(options);
+                if !path.is_empty() {
+                    self.texture = Some((path, line.at));
+                }
+            }
+            keyword if WITHOUT_EFFECT.contains(&keyword) => {}
+            keyword if changes_the_look(keyword, line.values()) => {
+                self.not_modelled.push((keyword.to_owned(), line.at));
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+}
+
+/// `Kd r g b`, or `Kd r` for grey.
+fn color(line: &Line<'_>) -> Result<[f64; 3], String> {
+    let keyword = line.keyword;
+    let words: Vec<&str> = line.values().split_ascii_whitespace().collect();
+    if let Some(space @ ("spectral" | "xyz")) = words.first().copied() {
+        return Err(format!(
+            "`{keyword} {space}` is not supported: give linear red, green and blue"
+        ));
+    }
+    let mut numbers = Vec::with_capacity(3);
+    for word in &words {
+        let number: f64 = word
+            .parse()
+            .map_err(|_| format!("`{word}` is not a number"))?;
+        if !(number.is_finite() && number >= 0.0) {
+            return Err(format!("`{keyword}` cannot be {word}"));
+        }
+        numbers.push(number);
+    }
+    match numbers[..] {
+        [grey] => Ok([grey; 3]),
+        [r, g, b, ..] => Ok([r, g, b]),
+        _ => Err(format!(
+            "`{keyword}` needs one or three numbers, not {}",
+            numbers.len()
+        )),
+    }
+}
+
+/// Whether a property that is not read differs from what an opaque, matt surface has.
+fn changes_the_look(keyword: &str, values: &str) -> bool {
+    let numbers: Vec<f64> = values
+        .split_ascii_whitespace()
+        .filter_map(|word| word.parse().ok())
+        .collect();
+    let all = |neutral: f64| !numbers.is_empty() && numbers.iter().all(|&x| x == neutral);
+    match keyword {
+        "d" | "Tf" => !all(1.0),
+        "illum" => numbers
+            .first()
+            .is_some_and(|&model| model > LAST_PLAIN_MODEL),
+        "Ks" | "Tr" | "Kt" | "Pm" | "Ps" | "Pc" | "Pcr" => !all(0.0),
+        _ => true,
+    }
+}
+
+/// Splits what follows `map_Kd` into the path, which may have spaces, and the options that would change the look.
+fn texture_path(rest: &str) -> (String, Vec<&str>) {
+    let mut rest = rest.trim();
+    let mut effective = Vec::new();
+    while let Some((option, after)) = split_word(rest) {
+        let Some(&(_, most)) = OPTIONS.iter().find(|(name, _)| *name == option) else {
+            break;
+        };
+        let mut values = Vec::new();
+        rest = after;
+        while values.len() < most {
+            let Some((value, after)) = split_word(rest) else {
+                break;
+            };
+            if VECTOR_OPTIONS.contains(&option) && value.parse::<f64>().is_err() {
+                break;
+            }
+            values.push(value);
+            rest = after;
+        }
+        if !is_neutral(option, &values) {
+            effective.push(option);
+        }
+    }
+    (unquote(rest).to_owned(), effective)
+}
+
+/// Whether an option leaves a colour texture as it is.
+fn is_neutral(option: &str, values: &[&str]) -> bool {
+    let numbers: Vec<f64> = values
+        .iter()
+        .filter_map(|value| value.parse().ok())
+        .collect();
+    match option {
+        "-s" => numbers.iter().all(|&x| x == 1.0),
+        "-o" | "-t" => numbers.iter().all(|&x| x == 0.0),
+        "-mm" => numbers == [0.0, 1.0],
+        "-clamp" | "-cc" => values == ["off"],
+        "-imfchan" | "-type" => false,
+        _ => true,
+    }
+}
+
+/// The first word, and what follows it.
+fn split_word(text: &str) -> Option<(&str, &str)> {
+    let text = text.trim_start();
+    let end = text.find(char::is_whitespace).unwrap_or(text.len());
+    (end > 0).then(|| (&text[..end], text[end..].trim_start()))
+}
+
+/// Drops a pair of quotation marks around a name.
+pub(super) fn unquote(name: &str) -> &str {
+    name.strip_prefix('"')
+        .and_then(|name| name.strip_suffix('"'))
+        .unwrap_or(name)
+}

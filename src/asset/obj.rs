@@ -1,0 +1,383 @@
+//! OBJ text to a [`Mesh`]: the scan's clean text through `tobj`, then triangles in file order.
+//!
+//! Enters: the text of a file and its materials by `usemtl` line. Leaves: a mesh whose every corner has the uv and the
+//! normal that its own token names. Deliberately absent: curves, points, lines, vertex colours, smoothing groups.
+
+use super::scan::{self, Face, Scan, WITH_NORMAL, WITH_UV, at_line};
+use super::text::Lines;
+use super::triangulate::{self, Trouble};
+use super::{Mesh, codes};
+use crate::diag::Diagnostic;
+use crate::math::{DVec2, DVec3};
+use tobj::LoadError;
+
+/// Coordinates beyond this are refused: products of three of them, as in volumes, would overflow.
+const MAX_COORDINATE: f64 = 1e100;
+
+/// Triangles without area, faces with bad attributes: how many, and the offset of the first one's line.
+#[derive(Clone, Copy, Default)]
+struct Tally {
+    count: usize,
+    first: usize,
+}
+
+impl Tally {
+    fn add(&mut self, at: usize) {
+        if self.count == 0 {
+            self.first = at;
+        }
+        self.count += 1;
+    }
+
+    fn of(places: &[usize]) -> Tally {
+        Tally {
+            count: places.len(),
+            first: places.first().copied().unwrap_or_default(),
+        }
+    }
+}
+
+/// Builds the triangles of a scanned file. `materials` gives the index into [`Mesh::materials`] of each `usemtl` line.
+/// Appends warnings.
+///
+/// # Errors
+/// A number, index or vertex that cannot be used, with its line.
+pub(super) fn triangles(
+    source: &str,
+    scan: &Scan,
+    materials: &[Option<u32>],
+    warnings: &mut Vec<Diagnostic>,
+) -> Result<Mesh, Diagnostic> {
+    let groups = parse(source, scan)?;
+    let mut builder = Builder::new(source, groups);
+    for face in &scan.faces {
+        let material = face.used.and_then(|used| materials[used as usize]);
+        builder.face(face, material)?;
+    }
+    warnings.extend(builder.warnings(scan));
+    let mesh = builder.mesh;
+    if mesh.corners.is_empty() {
+        return Err(Diagnostic::error(
+            codes::NO_FACES,
+            "no face of the file has an area",
+        ));
+    }
+    Ok(mesh)
+}
+
+/// The groups of faces, as the parser read them.
+fn parse(source: &str, scan: &Scan) -> Result<[tobj::Mesh; 4], Diagnostic> {
+    let mut text = String::with_capacity(scan.groups.iter().fold(64, |sum, g| sum + g.len()));
+    for (set, group) in scan
+        .groups
+        .iter()
+        .enumerate()
+        .filter(|(_, g)| !g.is_empty())
+    {
+        text.push_str(["g 0\n", "g 1\n", "g 2\n", "g 3\n"][set]);
+        text.push_str(group);
+    }
+    let options = tobj::LoadOptions {
+        single_index: false,
+        triangulate: false,
+        ignore_points: true,
+        ignore_lines: true,
+    };
+    let mut reader = std::io::Read::chain(scan.vertices.as_bytes(), text.as_bytes());
+    let no_materials = |_: &std::path::Path| Ok(Default::default());
+    let (models, _) = tobj::load_obj_buf(&mut reader, &options, no_materials)
+        .map_err(|error| locate(source, error))?;
+    let mut groups: [tobj::Mesh; 4] = Default::default();
+    for model in models {
+        match model.name.parse::<usize>() {
+            Ok(set @ 0..=3) => groups[set] = model.mesh,
+            _ => return Err(unexpected()),
+        }
+    }
+    Ok(groups)
+}
+
+/// The first line that the parser cannot have read.
+fn locate(source: &str, error: LoadError) -> Diagnostic {
+    let (keyword, least) = match error {
+        LoadError::PositionParseError | LoadError::ScalingByZeroError => ("v", 3),
+        LoadError::TexcoordParseError => ("vt", 2),
+        LoadError::NormalParseError => ("vn", 3),
+        other => return Diagnostic::error(codes::PARSER, format!("the OBJ parser says: {other}")),
+    };
+    for line in Lines::of(source).filter(|line| line.keyword == keyword) {
+        let words: Vec<&str> = line.values().split_ascii_whitespace().collect();
+        let weighted = keyword == "v" && words.len() == 4;
+        for (i, word) in words
+            .iter()
+            .enumerate()
+            .take(if weighted { 4 } else { least })
+        {
+            let says = match word.parse::<f64>() {
+                Err(_) => format!("`{word}` is not a number"),
+                Ok(0.0) if i == 3 => "the weight of a vertex cannot be 0".to_owned(),
+                Ok(_) => continue,
+            };
+            return at_line(Diagnostic::error(codes::BAD_NUMBER, says), source, line.at);
+        }
+    }
+    Diagnostic::error(codes::PARSER, format!("the OBJ parser says: {error}"))
+}
+
+fn unexpected() -> Diagnostic {
+    Diagnostic::error(
+        codes::PARSER,
+        "the OBJ parser gave other faces than the file has",
+    )
+}
+
+/// Walks the faces in file order and the groups in step.
+struct Builder<'a> {
+    source: &'a str,
+    groups: [tobj::Mesh; 4],
+    /// Corners of each group that are done.
+    done: [usize; 4],
+    /// Index in `mesh.positions` of the first position of each group.
+    base: [u32; 4],
+    mesh: Mesh,
+    any_uv: bool,
+    any_normal: bool,
+    zero_area: Tally,
+    bad_uv: Tally,
+    bad_normal: Tally,
+    tangled: Tally,
+    points: Vec<DVec3>,
+    triangles: Vec<[usize; 3]>,
+}
+
+impl<'a> Builder<'a> {
+    fn new(source: &'a str, groups: [tobj::Mesh; 4]) -> Builder<'a> {
+        let mut mesh = Mesh::default();
+        let base = [0, 1, 2, 3].map(|set: usize| {
+            let base = mesh.positions.len() as u32;
+            let (points, _) = groups[set].positions.as_chunks::<3>();
+            mesh.positions
+                .extend(points.iter().map(|&p| DVec3::from_array(p)));
+            base
+        });
+        Builder {
+            source,
+            any_uv: [1, 3]
+                .iter()
+                .any(|&set: &usize| !groups[set].indices.is_empty()),
+            any_normal: [2, 3]
+                .iter()
+                .any(|&set: &usize| !groups[set].indices.is_empty()),
+            groups,
+            done: [0; 4],
+            base,
+            mesh,
+            zero_area: Tally::default(),
+            bad_uv: Tally::default(),
+            bad_normal: Tally::default(),
+            tangled: Tally::default(),
+            points: Vec::new(),
+            triangles: Vec::new(),
+        }
+    }
+
+    fn face(&mut self, face: &Face, material: Option<u32>) -> Result<(), Diagnostic> {
+        let set = usize::from(face.set);
+        let first = self.done[set];
+        let corners = first..first + face.corners as usize;
+        self.done[set] = corners.end;
+        let indices = self.groups[set]
+            .indices
+            .get(corners)
+            .ok_or_else(unexpected)?;
+        self.points.clear();
+        for &index in indices {
+            let position = self.mesh.positions[(self.base[set] + index) as usize];
+            if !(position.abs().max_element() <= MAX_COORDINATE) {
+                return Err(bad_vertex(self.source, face, self.points.len(), position));
+            }
+            self.points.push(position);
+        }
+        self.triangles.clear();
+        match triangulate::triangulate(&self.points, &mut self.triangles) {
+            Ok(()) => {}
+            Err(Trouble::Tangled) => self.tangled.add(face.at),
+            Err(Trouble::TooLarge) => return Err(self.too_many_corners(face)),
+        }
+        for t in 0..self.triangles.len() {
+            let triangle = self.triangles[t];
+            if has_area(triangle.map(|k| self.points[k])) {
+                self.triangle(face, triangle.map(|k| first + k), material)?;
+            } else {
+                self.zero_area.add(face.at);
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds a triangle of three corners of the face's group.
+    fn triangle(
+        &mut self,
+        face: &Face,
+        corners: [usize; 3],
+        material: Option<u32>,
+    ) -> Result<(), Diagnostic> {
+        let set = usize::from(face.set);
+        for corner in corners {
+            let index = self.base[set] + self.groups[set].indices[corner];
+            self.mesh.corners.push(index);
+            if self.any_uv {
+                let uv = self.uv(face, corner)?;
+                self.mesh.uvs.push(uv);
+            }
+            if self.any_normal {
+                let normal = self.normal(face, corner)?;
+                self.mesh.normals.push(normal);
+            }
+        }
+        self.mesh.material.push(material);
+        Ok(())
+    }
+
+    fn uv(&mut self, face: &Face, corner: usize) -> Result<Option<DVec2>, Diagnostic> {
+        if face.set & WITH_UV == 0 {
+            return Ok(None);
+        }
+        let group = &self.groups[usize::from(face.set)];
+        let (uvs, _) = group.texcoords.as_chunks::<2>();
+        let index = group.texcoord_indices.get(corner);
+        let uv = index
+            .and_then(|&i| uvs.get(i as usize))
+            .ok_or_else(unexpected)?;
+        let uv = DVec2::from_array(*uv);
+        if !uv.is_finite() {
+            self.bad_uv.add(face.at);
+            return Ok(None);
+        }
+        Ok(Some(uv))
+    }
+
+    fn normal(&mut self, face: &Face, corner: usize) -> Result<Option<DVec3>, Diagnostic> {
+        if face.set & WITH_NORMAL == 0 {
+            return Ok(None);
+        }
+        let group = &self.groups[usize::from(face.set)];
+        let (normals, _) = group.normals.as_chunks::<3>();
+        let index = group.normal_indices.get(corner);
+        let normal = index
+            .and_then(|&i| normals.get(i as usize))
+            .ok_or_else(unexpected)?;
+        let unit = super::normals::unit(DVec3::from_array(*normal));
+        if unit.is_none() {
+            self.bad_normal.add(face.at);
+        }
+        Ok(unit)
+    }
+
+    fn too_many_corners(&self, face: &Face) -> Diagnostic {
+        let says = format!(
+            "a concave face of {} corners: at most {} can be triangulated",
+            face.corners,
+            triangulate::MAX_CONCAVE_CORNERS
+        );
+        at_line(
+            Diagnostic::error(codes::TOO_LARGE, says),
+            self.source,
+            face.at,
+        )
+    }
+
+    fn warnings(&self, scan: &Scan) -> Vec<Diagnostic> {
+        let told = [
+            (
+                codes::SHORT_FACE,
+                Tally::of(&scan.short),
+                "faces of fewer than three corners are skipped",
+            ),
+            (
+                codes::MIXED_FACE,
+                Tally::of(&scan.mixed),
+                "faces give a uv or normal to some corners only, which is ignored",
+            ),
+            (
+                codes::ZERO_AREA,
+                self.zero_area,
+                "triangles without area are dropped",
+            ),
+            (codes::TANGLED_FACE, self.tangled, "faces cross themselves"),
+            (
+                codes::BAD_UV,
+                self.bad_uv,
+                "corners have a uv that is not finite, which is ignored",
+            ),
+            (
+                codes::BAD_NORMAL,
+                self.bad_normal,
+                "corners have a normal that is zero or not finite, which is ignored",
+            ),
+        ];
+        told.into_iter()
+            .filter(|(_, tally, _)| tally.count > 0)
+            .map(|(code, tally, says)| {
+                let says = format!("{} {says}; the first is here", tally.count);
+                at_line(Diagnostic::warning(code, says), self.source, tally.first)
+            })
+            .collect()
+    }
+}
+
+/// Whether the triangle has an area: its edges, each scaled to size 1 so that nothing underflows, are not parallel.
+fn has_area([a, b, c]: [DVec3; 3]) -> bool {
+    let scaled = |edge: DVec3| edge / edge.abs().max_element();
+    let cross = scaled(b - a).cross(scaled(c - a));
+    cross.abs().max_element() > 0.0 && b != c
+}
+
+/// The error for corner `corner` of a face, whose position cannot be used.
+fn bad_vertex(source: &str, face: &Face, corner: usize, position: DVec3) -> Diagnostic {
+    let says = if position.is_finite() {
+        "is beyond 1e100"
+    } else {
+        "is not finite"
+    };
+    let at = vertex_line(source, face, corner);
+    let line_of_face = source[..face.at].matches('\n').count() + 1;
+    let says = format!("the vertex {says}, and the face in line {line_of_face} uses it");
+    at_line(
+        Diagnostic::error(codes::BAD_VERTEX, says),
+        source,
+        at.unwrap_or(face.at),
+    )
+}
+
+/// Offset of the `v` line that a corner of a face names.
+fn vertex_line(source: &str, face: &Face, corner: usize) -> Option<usize> {
+    let line = Lines::of(source).find(|line| line.at == face.at)?;
+    let token = line.values().split_ascii_whitespace().nth(corner)?;
+    let index: i64 = token.split('/').next()?.parse().ok()?;
+    let vertices = || Lines::of(source).filter(|line| line.keyword == "v");
+    let index = match usize::try_from(index) {
+        Ok(index) => index.checked_sub(1)?,
+        Err(_) => {
+            let before = vertices().take_while(|line| line.at < face.at).count();
+            before.checked_add_signed(isize::try_from(index).ok()?)?
+        }
+    };
+    vertices().nth(index).map(|line| line.at)
+}
+
+/// Scans a file; errors of all its lines at once, or that it has no faces.
+pub(super) fn scan(source: &str) -> Result<Scan, Vec<Diagnostic>> {
+    let mut scan = Scan::of(source);
+    if !scan.errors.is_empty() {
+        return Err(std::mem::take(&mut scan.errors));
+    }
+    if scan.faces.is_empty() {
+        return Err(vec![Diagnostic::error(
+            codes::NO_FACES,
+            "the file has no faces",
+        )]);
+    }
+    debug_assert!(scan.errors.len() <= scan::MAX_ERRORS);
+    Ok(scan)
+}

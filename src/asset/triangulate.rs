@@ -1,0 +1,140 @@
+//! Polygons to triangles: a fan where it covers the polygon, else ear clipping in the polygon's best plane.
+
+use crate::math::{DVec2, DVec3};
+
+/// A polygon that needs ear clipping may have this many corners: clipping takes time in the square of their number.
+pub(super) const MAX_CONCAVE_CORNERS: usize = 10_000;
+
+/// Why a polygon was not triangulated as it stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Trouble {
+    /// More than [`MAX_CONCAVE_CORNERS`] corners where a fan does not do.
+    TooLarge,
+    /// It crosses itself; it was triangulated as well as it goes.
+    Tangled,
+}
+
+/// Appends the triangles of a polygon as triples of indices into `points`, in the winding of the polygon.
+///
+/// A polygon of n corners gives n − 2 triangles, some perhaps without area. Equal input gives equal triangles.
+pub(super) fn triangulate(points: &[DVec3], out: &mut Vec<[usize; 3]>) -> Result<(), Trouble> {
+    let n = points.len();
+    if n == 3 {
+        out.push([0, 1, 2]);
+        return Ok(());
+    }
+    let flat = project(points);
+    let fan = (1..n - 1).map(|i| [0, i, i + 1]);
+    let covers = fan
+        .clone()
+        .all(|[a, b, c]| turn(flat[a], flat[b], flat[c]) > 0.0);
+    if covers {
+        out.extend(fan);
+        return Ok(());
+    }
+    if n > MAX_CONCAVE_CORNERS {
+        return Err(Trouble::TooLarge);
+    }
+    clip_ears(&flat, out)
+}
+
+/// Drops the coordinate along which the polygon's normal (Newell's) is longest: coordinates stay exact, and the
+/// polygon turns counter-clockwise.
+fn project(points: &[DVec3]) -> Vec<DVec2> {
+    let origin = points[0];
+    let mut normal = DVec3::ZERO;
+    for (i, &a) in points.iter().enumerate() {
+        let b = points[(i + 1) % points.len()];
+        normal += (a - origin).cross(b - origin);
+    }
+    let size = normal.abs();
+    let flatten = |p: DVec3| {
+        if size.x >= size.y && size.x >= size.z {
+            (p.y, p.z, normal.x)
+        } else if size.y >= size.z {
+            (p.z, p.x, normal.y)
+        } else {
+            (p.x, p.y, normal.z)
+        }
+    };
+    points
+        .iter()
+        .map(|&p| {
+            let (u, v, along) = flatten(p - origin);
+            DVec2::new(if along < 0.0 { -u } else { u }, v)
+        })
+        .collect()
+}
+
+/// Twice the signed area of a triangle: above 0 counter-clockwise.
+fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+    (b - a).perp_dot(c - a)
+}
+
+/// Cuts off ears, first to last, until a triangle is left.
+fn clip_ears(flat: &[DVec2], out: &mut Vec<[usize; 3]>) -> Result<(), Trouble> {
+    let n = flat.len();
+    let mut ring = Ring::of(n);
+    let mut left = n;
+    let mut at = 0;
+    let mut refused = 0;
+    let mut clean = true;
+    while left > 3 {
+        let (before, after) = (ring.before[at], ring.after[at]);
+        let stuck = refused >= left;
+        if stuck || is_ear(flat, &ring, at) {
+            let bend = turn(flat[before], flat[at], flat[after]);
+            clean &= !stuck || bend == 0.0;
+            out.push([before, at, after]);
+            ring.remove(at);
+            left -= 1;
+            refused = 0;
+        } else {
+            refused += 1;
+        }
+        at = after;
+    }
+    out.push([ring.before[at], at, ring.after[at]]);
+    if clean { Ok(()) } else { Err(Trouble::Tangled) }
+}
+
+/// The corners that are left, linked in a ring.
+struct Ring {
+    before: Vec<usize>,
+    after: Vec<usize>,
+}
+
+impl Ring {
+    fn of(n: usize) -> Ring {
+        Ring {
+            before: (0..n).map(|i| (i + n - 1) % n).collect(),
+            after: (0..n).map(|i| (i + 1) % n).collect(),
+        }
+    }
+
+    fn remove(&mut self, at: usize) {
+        let (before, after) = (self.before[at], self.after[at]);
+        self.after[before] = after;
+        self.before[after] = before;
+    }
+}
+
+/// Whether the corner is convex and no other corner that is left lies in its triangle. Corners at the very place of
+/// one of the three do not count: bridges to holes repeat them.
+fn is_ear(flat: &[DVec2], ring: &Ring, at: usize) -> bool {
+    let (before, after) = (ring.before[at], ring.after[at]);
+    let (a, b, c) = (flat[before], flat[at], flat[after]);
+    if turn(a, b, c) <= 0.0 {
+        return false;
+    }
+    let mut other = ring.after[after];
+    while other != before {
+        let p = flat[other];
+        let apart = p != a && p != b && p != c;
+        if apart && turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0 {
+            return false;
+        }
+        other = ring.after[other];
+    }
+    true
+}
