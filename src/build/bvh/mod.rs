@@ -1,0 +1,147 @@
+//! The builder of bounding volume hierarchies: boxes of primitives in, blocks in leaf order and a linear tree out.
+//!
+//! Two lives, two types: while it grows, the tree is made of `BuildNode`s over ranges of items; what rays
+//! walk is [`LinearNode`](crate::flat::LinearNode)s. Deterministic, whatever the number of threads.
+//!
+//! Deliberately absent: spatial splits, refitting, and any knowledge of rays.
+
+mod linear;
+mod split;
+mod tree;
+pub mod validate;
+
+use crate::flat::{BLOCK, Bvh, SphereBlock, Triangles};
+use crate::math::{Aabb, Vec3};
+use std::ops::Range;
+
+/// How much of a tree is built. The picture is the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Accel {
+    /// None: every ray tests every primitive.
+    Brute,
+    /// One box per group of triangles, with all its triangles.
+    Box,
+    /// The tree.
+    #[default]
+    Bvh,
+}
+
+/// A sphere for the tree or for the loop, scene units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SphereItem {
+    /// Centre.
+    pub center: [f64; 3],
+    /// Radius.
+    pub radius: f64,
+    /// Index in authoring order.
+    pub prim: u32,
+}
+
+/// What a tree is built over; all in one space.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Primitives<'a> {
+    /// Vertices of each triangle, authoring order.
+    pub triangles: &'a [[Vec3; 3]],
+    /// The triangles of each mesh, for [`Accel::Box`]: disjoint, ascending, together all triangles. Empty means one
+    /// group.
+    pub groups: &'a [Range<u32>],
+    /// Spheres of the tree.
+    pub spheres: &'a [SphereItem],
+    /// Boxes of the instances, in the scene's order.
+    pub instances: &'a [Aabb],
+}
+
+/// What [`build`] gives.
+#[derive(Clone, Debug)]
+pub struct Built {
+    /// The tree.
+    pub bvh: Bvh,
+    /// Triangles in leaf order.
+    pub triangles: Triangles,
+    /// Spheres in leaf order.
+    pub sphere_blocks: Vec<SphereBlock>,
+    /// Expected work of a ray that meets the root's box, in block tests (surface area heuristic): every inner node
+    /// costs 0.4, every block 1, weighted by area.
+    pub cost: f32,
+}
+
+/// Builds the tree over `p`, or less of it.
+///
+/// Any input is fine: none, one, a million equal ones. A primitive with a coordinate that is not finite gets an empty
+/// box: it is stored, and never hit.
+#[must_use]
+pub fn build(p: &Primitives, accel: Accel) -> Built {
+    let mut items = items_of(p);
+    let root = match accel {
+        Accel::Bvh => tree::grow(&mut items),
+        Accel::Brute => tree::over_kinds(&items, &[0..p.triangles.len()]),
+        Accel::Box if p.groups.is_empty() => tree::over_kinds(&items, &[0..p.triangles.len()]),
+        Accel::Box => {
+            let groups: Vec<_> = p
+                .groups
+                .iter()
+                .map(|g| g.start as usize..g.end as usize)
+                .collect();
+            tree::over_kinds(&items, &groups)
+        }
+    };
+    linear::linearize(p, &items, root)
+}
+
+/// Spheres in the order given, eight to a block, the last one padded.
+#[must_use]
+pub fn sphere_blocks(spheres: &[SphereItem]) -> Vec<SphereBlock> {
+    spheres.chunks(BLOCK).map(linear::sphere_block).collect()
+}
+
+/// The f32 box of a sphere, rounded outward; empty if something is not finite.
+#[must_use]
+pub fn sphere_bounds(center: [f64; 3], radius: f64) -> Aabb {
+    let lo = center.map(|c| round_down((c - radius).next_down()));
+    let hi = center.map(|c| -round_down(-(c + radius).next_up()));
+    finite_or_empty(Aabb {
+        min: Vec3::from(lo),
+        max: Vec3::from(hi),
+    })
+}
+
+/// The largest f32 that is not above `x`.
+fn round_down(x: f64) -> f32 {
+    let nearest = x as f32;
+    if f64::from(nearest) > x {
+        nearest.next_down()
+    } else {
+        nearest
+    }
+}
+
+fn finite_or_empty(b: Aabb) -> Aabb {
+    if b.min.is_finite() && b.max.is_finite() {
+        b
+    } else {
+        Aabb::EMPTY
+    }
+}
+
+/// One box per primitive: triangles, then spheres, then instances.
+fn items_of(p: &Primitives) -> Vec<tree::Item> {
+    use tree::{Item, Kind};
+    let triangles = p.triangles.iter().map(|v| {
+        // A comparison with NaN is false, so that minima drop it: ask for it first.
+        let finite = v.iter().all(|v| v.is_finite());
+        if finite {
+            Aabb::point(v[0]).with(v[1]).with(v[2])
+        } else {
+            Aabb::EMPTY
+        }
+    });
+    let spheres = p.spheres.iter().map(|s| sphere_bounds(s.center, s.radius));
+    let instances = p.instances.iter().map(|&b| finite_or_empty(b));
+    let number = |kind| move |(i, bounds)| Item::new(bounds, kind, i as u32);
+    triangles
+        .enumerate()
+        .map(number(Kind::Triangle))
+        .chain(spheres.enumerate().map(number(Kind::Sphere)))
+        .chain(instances.enumerate().map(number(Kind::Instance)))
+        .collect()
+}
