@@ -50,3 +50,15 @@ pub struct Material {
     /// Radiance emitted on the side that the geometric normal points to.
     pub emission: [f32; 3],
 }
+
+/// Reflectance of dielectrics.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Fresnel {
+    /// Fresnel's equations, unpolarised.
+    #[default]
+    Exact,
+    /// Schlick's approximation, R = k0 + (1 − k0)(1 − |cos θ|)⁵.
+    Schlick,
+    /// Nothing is reflected, except totally.
+    Off,
+}

@@ -19,7 +19,7 @@ pub use bvh::{Bvh, LinearNode};
 pub use camera::{Camera, PixelFilter};
 pub use geometry::{Geometry, Instance, Normals, ObjectId, Shading};
 pub use lights::{LightTriangles, Lights};
-pub use materials::{ColorSource, Material, MaterialId, Scatter};
+pub use materials::{ColorSource, Fresnel, Material, MaterialId, Scatter};
 pub use needs::Needs;
 pub use spheres::{SphereBlock, Spheres};
 pub use texture::{FilterMode, Texture, WrapMode};

@@ -1,6 +1,7 @@
 //! The dials of tracing. Each default is the exact one.
 
 use super::Isa;
+pub use crate::flat::Fresnel;
 
 /// Where random numbers come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -10,18 +11,6 @@ pub enum Sampler {
     /// Owen-scrambled Sobol points, padded pairs of dimensions.
     #[default]
     Sobol,
-}
-
-/// Reflectance of dielectrics.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Fresnel {
-    /// Fresnel's equations, unpolarised.
-    #[default]
-    Exact,
-    /// Schlick's approximation, R = k0 + (1 − k0)(1 − |cos θ|)⁵.
-    Schlick,
-    /// Nothing is reflected, except totally.
-    Off,
 }
 
 /// What tracing may be told.

@@ -1,1 +1,16 @@
-//! world
+//! The world: a [`hecs::World`] of components, spawned from a scene file's description and posed at a time.
+//!
+//! Enters: a [`crate::scene::SceneDesc`]. Leaves: a world with every file loaded into an [`crate::asset::AssetStore`],
+//! and, after [`pose`], a [`Pose`] on every entity. Why hecs: authoring, animation and change; the build reads it once a
+//! frame, and tracing never sees it.
+//!
+//! Deliberately absent: kernels, flat buffers, pixels.
+
+mod components;
+mod pose;
+
+pub use components::{
+    AuthoringIndex, Camera, Color, Emissive, Material, Name, Normals, Parent, Pose, Scattering,
+    Shape, Spin, Transform,
+};
+pub use pose::{pose, poses};
