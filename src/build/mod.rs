@@ -1,3 +1,164 @@
-//! build
+//! Build: a posed world becomes a [`FlatScene`]: extract (in authoring order) → flatten → tree.
+//!
+//! Enters: `&World`, read-only by type, and the store. Leaves: arrays and ids; names, paths, entities and f64
+//! transforms end here. A frame depends on the scene and the world's poses alone, never on the frame before: what is
+//! kept between frames (the rebase, local geometries, smoothed normals) is a function of the scene.
+//!
+//! Deliberately absent: files, pixels, and any error: what cannot be built was refused when it was read.
 
 pub mod bvh;
+mod bytes;
+mod camera;
+mod extract;
+mod flatten;
+mod fresnel;
+mod instances;
+mod lights;
+mod materials;
+mod meshes;
+mod needs;
+mod rebase;
+mod spheres;
+
+pub use bvh::Accel;
+pub use bytes::{BufferBytes, buffer_bytes};
+
+use crate::asset::AssetStore;
+use crate::flat::{FlatScene, Fresnel, Geometry, PixelFilter, Rebase};
+use crate::world::{Pose, poses};
+use extract::{Extracted, extract};
+use flatten::{Cache, Context, flatten};
+use hecs::{Entity, World};
+use materials::Tables;
+use std::collections::HashMap;
+use std::time::{Duration, Instant};
+
+/// What the build must know besides the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BuildOptions {
+    /// How much of a tree.
+    pub accel: Accel,
+    /// Image width and height in pixels.
+    pub size: (u32, u32),
+    /// Pixel filter.
+    pub filter: PixelFilter,
+    /// Radiance of rays that hit nothing, linear RGB.
+    pub background: [f32; 3],
+    /// Whether texture coordinates are wanted even where nothing is textured.
+    pub uv_aov: bool,
+    /// Reflectance of dielectrics, for the mean that a plastic keeps inside.
+    pub fresnel: Fresnel,
+}
+
+/// What the steps of one build took, and what came out.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BuildTimes {
+    /// World to sorted items.
+    pub extract: Duration,
+    /// Items to arrays.
+    pub flatten: Duration,
+    /// Trees: the scene's, and in the first frame those of its local geometries.
+    pub bvh: Duration,
+    /// Expected block tests of a ray that meets the scene's box, by the surface area heuristic.
+    pub cost: f32,
+    /// Size of all buffers.
+    pub bytes: usize,
+}
+
+/// Builds the frames of one scene.
+pub struct SceneBuilder {
+    store: AssetStore,
+    options: BuildOptions,
+    rebase: Rebase,
+    /// Whether any texture coordinates are read.
+    uvs: bool,
+    cache: Cache,
+}
+
+impl SceneBuilder {
+    /// Prepares the builds of a scene. The world may be posed at any time: the rebase comes from its poses at rest.
+    #[must_use]
+    pub fn new(world: &World, store: &AssetStore, options: BuildOptions) -> SceneBuilder {
+        let rest: HashMap<Entity, Pose> = poses(world, 0.0).into_iter().collect();
+        let rest = extract(world, |e| rest.get(&e).copied().unwrap_or_default());
+        SceneBuilder {
+            store: store.clone(),
+            options,
+            rebase: rebase::of_scene(&rest, store),
+            uvs: options.uv_aov || textured(&rest, store),
+            cache: Cache::default(),
+        }
+    }
+
+    /// Builds the frame that the world is posed for; `frame` is what tells its noise from other frames'.
+    pub fn build(&mut self, world: &World, frame: u32) -> (FlatScene, BuildTimes) {
+        let start = Instant::now();
+        let extracted = extract(world, |e| {
+            world.get::<&Pose>(e).map(|p| *p).unwrap_or_default()
+        });
+        let extracting = start.elapsed();
+
+        let context = Context {
+            store: &self.store,
+            rebase: self.rebase,
+            accel: self.options.accel,
+            fresnel: self.options.fresnel,
+            uvs: self.uvs,
+        };
+        let flat = flatten(&extracted, &context, &mut self.cache);
+        let flattening = start.elapsed() - extracting - flat.local_trees;
+
+        let start = Instant::now();
+        let built = bvh::build(&flat.primitives(), self.options.accel);
+        let tree = start.elapsed() + flat.local_trees;
+
+        let (pose, camera) = &extracted.camera;
+        let mut scene = FlatScene {
+            camera: camera::camera(pose, camera, &self.rebase, &self.options),
+            world: Geometry {
+                triangles: built.triangles,
+                bvh: built.bvh,
+                shading: flat.soup.shading,
+            },
+            local: flat.local,
+            instances: flat.instances,
+            instance_materials: flat.instance_materials,
+            spheres: flat.spheres,
+            materials: flat.materials,
+            textures: flat.textures,
+            lights: flat.lights,
+            background: self.options.background,
+            rebase: self.rebase,
+            needs: Default::default(),
+            frame,
+        };
+        scene.spheres.blocks = built.sphere_blocks;
+        scene.needs = needs::needs(&scene);
+        let times = BuildTimes {
+            extract: extracting,
+            flatten: flattening,
+            bvh: tree,
+            cost: built.cost,
+            bytes: buffer_bytes(&scene).iter().map(|b| b.bytes).sum(),
+        };
+        (scene, times)
+    }
+
+    /// How scene units come about.
+    #[must_use]
+    pub fn rebase(&self) -> Rebase {
+        self.rebase
+    }
+}
+
+/// Whether any material that occurs reads a texture.
+fn textured(scene: &Extracted, store: &AssetStore) -> bool {
+    let mut tables = Tables::new(store, Fresnel::Off);
+    for item in &scene.spheres {
+        tables.resolve(&item.look, None);
+    }
+    for item in &scene.meshes {
+        tables.resolve_slots(&item.look, store.mesh(item.mesh));
+    }
+    tables.textured()
+}

@@ -23,10 +23,7 @@ pub fn poses(world: &World, t: f64) -> Vec<(Entity, Pose)> {
         .iter()
         .map(|(entity, transform, spin, parent)| {
             let transform = transform.copied().unwrap_or_default();
-            (
-                entity,
-                Local::new(&transform, spin, parent.map(|p| p.0), t),
-            )
+            (entity, Local::new(&transform, spin, parent.map(|p| p.0), t))
         })
         .collect();
     let place: HashMap<Entity, usize> = locals.iter().enumerate().map(|(i, l)| (l.0, i)).collect();

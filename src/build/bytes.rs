@@ -1,0 +1,99 @@
+//! How large the buffers of a scene are.
+
+use crate::flat::{FlatScene, Geometry};
+
+/// A buffer, or buffers of one kind, of a [`FlatScene`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BufferBytes {
+    /// What it holds.
+    pub name: &'static str,
+    /// Number of elements.
+    pub len: usize,
+    /// Bytes of all elements.
+    pub bytes: usize,
+}
+
+/// The buffers of a scene that are not empty, hot ones first. Texels count once however many textures share them.
+#[must_use]
+pub fn buffer_bytes(scene: &FlatScene) -> Vec<BufferBytes> {
+    let geometries: Vec<&Geometry> = std::iter::once(&scene.world)
+        .chain(scene.local.iter().map(AsRef::as_ref))
+        .collect();
+    let of_all = |name, buffer: &dyn Fn(&Geometry) -> BufferBytes| {
+        geometries.iter().map(|g| buffer(g)).fold(
+            BufferBytes {
+                name,
+                len: 0,
+                bytes: 0,
+            },
+            |sum, b| BufferBytes {
+                name,
+                len: sum.len + b.len,
+                bytes: sum.bytes + b.bytes,
+            },
+        )
+    };
+    let spheres = &scene.spheres;
+    let triangles = &scene.lights.triangles;
+    let mut buffers = vec![
+        of_all("nodes", &|g| buffer("", &g.bvh.nodes)),
+        of_all("triangle blocks", &|g| buffer("", &g.triangles.blocks)),
+        buffer("sphere blocks, tree", &spheres.blocks),
+        buffer("sphere blocks, loop", &spheres.looped),
+        buffer("instances", &scene.instances),
+        buffer("instance order", &scene.world.bvh.instance_order),
+        buffer("instance materials", &scene.instance_materials),
+        of_all("triangle places", &|g| buffer("", &g.triangles.place)),
+        of_all("corner normals", &|g| buffer("", &g.shading.normals.corner)),
+        of_all("corner uvs", &|g| buffer("", &g.shading.uvs)),
+        of_all("triangle materials", &|g| buffer("", &g.shading.material)),
+        of_all("triangle objects", &|g| buffer("", &g.shading.object)),
+        of_all("triangle file indices", &|g| {
+            buffer("", &g.shading.file_prim)
+        }),
+        buffer("sphere centres", &spheres.center),
+        buffer("sphere radii", &spheres.radius),
+        buffer("sphere sides", &spheres.inverted),
+        buffer("sphere materials", &spheres.material),
+        buffer("sphere objects", &spheres.object),
+        buffer("sphere rotations", &spheres.to_local),
+        buffer("materials", &scene.materials),
+        texels(scene),
+        buffer("light spheres", &scene.lights.spheres),
+        BufferBytes {
+            name: "light triangles",
+            len: triangles.v0.len(),
+            bytes: triangles.v0.len() * LIGHT_TRIANGLE,
+        },
+        buffer("light weights", &scene.lights.cumulative),
+    ];
+    buffers.retain(|b| b.len > 0);
+    buffers
+}
+
+/// Three vectors, a colour and an area.
+const LIGHT_TRIANGLE: usize = 4 * size_of::<[f32; 3]>() + size_of::<f32>();
+
+fn buffer<T>(name: &'static str, elements: &[T]) -> BufferBytes {
+    BufferBytes {
+        name,
+        len: elements.len(),
+        bytes: size_of_val(elements),
+    }
+}
+
+fn texels(scene: &FlatScene) -> BufferBytes {
+    let mut images: Vec<(*const u8, usize)> = scene
+        .textures
+        .iter()
+        .map(|t| (t.texels.as_ptr(), t.texels.len()))
+        .collect();
+    images.sort_unstable();
+    images.dedup();
+    let bytes = images.iter().map(|i| i.1).sum();
+    BufferBytes {
+        name: "texels",
+        len: bytes / 3,
+        bytes,
+    }
+}

@@ -1,0 +1,109 @@
+//! Extract: what the build needs of the world, copied out in authoring order, since hecs has none.
+
+use super::meshes::MeshKey;
+use crate::asset::MeshId;
+use crate::flat::ObjectId;
+use crate::world::{
+    AuthoringIndex, Camera, Emissive, Material, Normals, Parent, Pose, Shape, Spin,
+};
+use hecs::{Entity, World};
+
+/// The world at one time, sorted by [`AuthoringIndex`].
+#[derive(Debug)]
+pub(crate) struct Extracted {
+    pub(crate) camera: (Pose, Camera),
+    pub(crate) spheres: Vec<SphereItem>,
+    pub(crate) meshes: Vec<MeshItem>,
+}
+
+/// What every shape has.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Look {
+    pub(crate) object: ObjectId,
+    pub(crate) pose: Pose,
+    /// Overrides what a mesh file says.
+    pub(crate) material: Option<Material>,
+    pub(crate) emission: Option<[f64; 3]>,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SphereItem {
+    pub(crate) look: Look,
+    pub(crate) radius: f64,
+    pub(crate) inverted: bool,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MeshItem {
+    pub(crate) look: Look,
+    pub(crate) mesh: MeshId,
+    pub(crate) normals: Normals,
+    /// Whether the entity or an ancestor ever moves: known from the scene, not from the frame.
+    pub(crate) moves: bool,
+}
+
+impl MeshItem {
+    pub(crate) fn key(&self) -> MeshKey {
+        MeshKey::new(self.mesh, self.normals)
+    }
+}
+
+/// A world without a camera (`spawn` makes none) is seen from its origin.
+const NO_CAMERA: Camera = Camera {
+    vfov_deg: 60.0,
+    aperture_radius: 0.0,
+    focus_distance: 1.0,
+};
+
+/// Reads the world; `pose_of` says where an entity is.
+pub(crate) fn extract(world: &World, pose_of: impl Fn(Entity) -> Pose) -> Extracted {
+    let mut query = world.query::<(
+        Entity,
+        &AuthoringIndex,
+        Option<&Shape>,
+        Option<&Material>,
+        Option<&Emissive>,
+        Option<&Camera>,
+    )>();
+    let mut rows: Vec<_> = query.iter().collect();
+    rows.sort_by_key(|row| row.1);
+    let mut extracted = Extracted {
+        camera: (Pose::default(), NO_CAMERA),
+        spheres: Vec::new(),
+        meshes: Vec::new(),
+    };
+    for (entity, index, shape, material, emissive, camera) in rows {
+        let look = Look {
+            object: ObjectId(index.0),
+            pose: pose_of(entity),
+            material: material.copied(),
+            emission: emissive.map(|e| e.0),
+        };
+        match shape.copied() {
+            Some(Shape::Sphere { radius, inverted }) => extracted.spheres.push(SphereItem {
+                look,
+                radius,
+                inverted,
+            }),
+            Some(Shape::Mesh { mesh, normals }) => extracted.meshes.push(MeshItem {
+                look,
+                mesh,
+                normals,
+                moves: moves(world, entity),
+            }),
+            None => {}
+        }
+        if let Some(camera) = camera {
+            extracted.camera = (look.pose, *camera);
+        }
+    }
+    extracted
+}
+
+fn moves(world: &World, entity: Entity) -> bool {
+    let parent = |e: &Entity| world.get::<&Parent>(*e).ok().map(|p| p.0);
+    // A cycle of parents, which scene files cannot have, ends with the number of entities.
+    std::iter::successors(Some(entity), parent)
+        .take(world.len() as usize)
+        .any(|e| world.satisfies::<&Spin>(e))
+}

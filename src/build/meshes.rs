@@ -1,0 +1,229 @@
+//! Meshes to triangles: flattened into scene units, or kept in local units for their instances.
+
+use super::rebase::{self, to_local};
+use crate::asset::{Mesh, MeshId};
+use crate::flat::{self, ObjectId, Rebase, Shading};
+use crate::math::{DAffine3, DMat3, DVec3, Vec3, unit};
+use crate::world::Normals;
+
+/// A mesh with its normals: what is flattened, or what instances share.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct MeshKey {
+    pub(crate) mesh: MeshId,
+    /// What [`Normals`] it is, and the bits of its angle.
+    normals: (u8, u64),
+}
+
+impl MeshKey {
+    pub(crate) fn new(mesh: MeshId, normals: Normals) -> MeshKey {
+        let normals = match normals {
+            Normals::File => (0, 0),
+            Normals::Flat => (1, 0),
+            Normals::Smooth { angle_deg } => (2, angle_deg.to_bits()),
+        };
+        MeshKey { mesh, normals }
+    }
+}
+
+/// Unit corner normals in the mesh's own space; `None` where every triangle is flat.
+pub(crate) fn corner_normals(mesh: &Mesh, normals: Normals) -> Option<Vec<DVec3>> {
+    use crate::asset::normals::smooth;
+    match normals {
+        Normals::Flat => None,
+        Normals::Smooth { angle_deg } => Some(smooth(mesh, angle_deg)),
+        Normals::File if !mesh.normals.is_empty() && mesh.normals.iter().all(Option::is_some) => {
+            Some(mesh.normals.iter().copied().flatten().collect())
+        }
+        Normals::File => {
+            let mut corners = smooth(mesh, Normals::DEFAULT_ANGLE_DEG);
+            for (corner, file) in corners.iter_mut().zip(&mesh.normals) {
+                *corner = file.unwrap_or(*corner);
+            }
+            Some(corners)
+        }
+    }
+}
+
+/// Triangles of one space with their cold arrays, before there is a tree.
+#[derive(Debug, Default)]
+pub(crate) struct Soup {
+    pub(crate) triangles: Vec<[Vec3; 3]>,
+    pub(crate) shading: Shading,
+}
+
+/// What to append to a [`Soup`], and how.
+pub(crate) struct Part<'a> {
+    pub(crate) mesh: &'a Mesh,
+    /// See [`corner_normals`].
+    pub(crate) normals: Option<&'a [DVec3]>,
+    /// From the mesh's own space to that of the soup.
+    pub(crate) to: DAffine3,
+    /// Which cold arrays the soup keeps.
+    pub(crate) keep: Keep,
+}
+
+/// Which cold arrays something requires.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Keep {
+    pub(crate) normals: bool,
+    pub(crate) uvs: bool,
+}
+
+impl Soup {
+    /// Appends every triangle of a mesh, with the material that `material` gives to its index in the file.
+    ///
+    /// A map that mirrors swaps the second and third corner, with all that belongs to them, so that counter-clockwise
+    /// stays outward. Every coordinate is rounded once; a triangle that collapses is kept, and never hit.
+    pub(crate) fn append(
+        &mut self,
+        part: &Part,
+        object: Option<ObjectId>,
+        material: impl Fn(u32) -> u32,
+    ) {
+        let Part { mesh, to, keep, .. } = part;
+        let points: Vec<DVec3> = mesh
+            .positions
+            .iter()
+            .map(|p| to.transform_point3(*p))
+            .collect();
+        let cofactor = cofactor(&to.matrix3);
+        let order = if mirrors(&to.matrix3) {
+            [0, 2, 1]
+        } else {
+            [0, 1, 2]
+        };
+        for prim in 0..mesh.triangle_count() {
+            let corners = order.map(|k| 3 * prim + k);
+            let vertices = corners.map(|c| points[mesh.corners[c] as usize]);
+            self.triangles.push(vertices.map(|v| v.as_vec3()));
+            if keep.normals {
+                let geometric = geometric_normal(&vertices);
+                let normal = |c: usize| {
+                    let authored = part.normals.and_then(|normals| unit(cofactor * normals[c]));
+                    authored.unwrap_or(geometric).as_vec3().to_array()
+                };
+                self.shading.normals.corner.extend(corners.map(normal));
+            }
+            if keep.uvs {
+                let uv = |c: usize| mesh.uvs.get(c).copied().flatten().unwrap_or_default();
+                self.shading
+                    .uvs
+                    .extend(corners.map(|c| uv(c).as_vec2().to_array()));
+            }
+            let prim = prim as u32;
+            self.shading.file_prim.push(prim);
+            self.shading.material.push(material(prim));
+            self.shading.object.extend(object);
+        }
+    }
+}
+
+/// A mesh in its local units, for its instances.
+#[derive(Debug)]
+pub(crate) struct LocalMesh {
+    pub(crate) geometry: std::sync::Arc<flat::Geometry>,
+    /// From the mesh's own space to local units.
+    pub(crate) rebase: Rebase,
+    /// Vertices of `geometry`, each once: what boxes of instances are made of.
+    pub(crate) points: Vec<Vec3>,
+}
+
+impl LocalMesh {
+    /// Builds the geometry; its materials are slots, see [`slot`].
+    pub(crate) fn new(
+        mesh: &Mesh,
+        normals: Option<&[DVec3]>,
+        uvs: bool,
+        accel: super::Accel,
+    ) -> LocalMesh {
+        let rebase = rebase::of_mesh(mesh);
+        let mut soup = Soup::default();
+        let part = Part {
+            mesh,
+            normals,
+            to: to_local(&rebase),
+            keep: Keep {
+                normals: normals.is_some(),
+                uvs,
+            },
+        };
+        soup.append(&part, None, |prim| slot(mesh, prim) as u32);
+        let mut points: Vec<Vec3> = soup.triangles.iter().flatten().copied().collect();
+        points.sort_by(|a, b| {
+            let by = |k: usize| a[k].total_cmp(&b[k]);
+            by(0).then(by(1)).then(by(2))
+        });
+        points.dedup();
+        let primitives = super::bvh::Primitives {
+            triangles: &soup.triangles,
+            ..Default::default()
+        };
+        let built = super::bvh::build(&primitives, accel);
+        LocalMesh {
+            geometry: std::sync::Arc::new(flat::Geometry {
+                triangles: built.triangles,
+                bvh: built.bvh,
+                shading: soup.shading,
+            }),
+            rebase,
+            points,
+        }
+    }
+
+    /// The vertices of a triangle, as rays see them.
+    pub(crate) fn triangle(&self, prim: usize) -> [Vec3; 3] {
+        let triangles = &self.geometry.triangles;
+        let place = triangles.place[prim] as usize;
+        let (block, lane) = (&triangles.blocks[place / flat::BLOCK], place % flat::BLOCK);
+        block
+            .v
+            .map(|axes| Vec3::from_array(axes.map(|lanes| lanes[lane])))
+    }
+}
+
+/// The material slot of a triangle: the file's material, or the one behind the last for triangles without.
+pub(crate) fn slot(mesh: &Mesh, prim: u32) -> usize {
+    let named = mesh.material.get(prim as usize).copied().flatten();
+    named.map_or(mesh.materials.len(), |m| m as usize)
+}
+
+/// Which slots of a mesh occur.
+pub(crate) fn used_slots(mesh: &Mesh) -> Vec<bool> {
+    let mut used = vec![false; mesh.materials.len() + 1];
+    for prim in 0..mesh.triangle_count() {
+        used[slot(mesh, prim as u32)] = true;
+    }
+    used
+}
+
+/// Whether a map turns left hands into right ones.
+pub(crate) fn mirrors(linear: &DMat3) -> bool {
+    let largest = largest(linear);
+    (*linear * (1.0 / largest)).determinant() < 0.0
+}
+
+/// The map of normals, up to a positive factor: the inverse transpose is cofactors / determinant, and the sign of the
+/// determinant keeps normals on the outer side.
+fn cofactor(linear: &DMat3) -> DMat3 {
+    let m = *linear * (1.0 / largest(linear));
+    let sign = if mirrors(linear) { -1.0 } else { 1.0 };
+    DMat3::from_cols(
+        m.y_axis.cross(m.z_axis) * sign,
+        m.z_axis.cross(m.x_axis) * sign,
+        m.x_axis.cross(m.y_axis) * sign,
+    )
+}
+
+/// Largest absolute entry, or 1 if all are 0: products of scaled entries neither overflow nor underflow.
+fn largest(linear: &DMat3) -> f64 {
+    let columns = [linear.x_axis, linear.y_axis, linear.z_axis];
+    let largest = columns
+        .iter()
+        .fold(0.0, |m: f64, c| m.max(c.abs().max_element()));
+    if largest > 0.0 { largest } else { 1.0 }
+}
+
+/// Unit normal of a counter-clockwise triangle; some unit vector for one that has none.
+fn geometric_normal(v: &[DVec3; 3]) -> DVec3 {
+    unit((v[1] - v[0]).cross(v[2] - v[0])).unwrap_or(DVec3::Z)
+}
