@@ -73,9 +73,12 @@ impl<'a> Tables<'a> {
     pub(crate) fn resolve_slots(&mut self, look: &Look, mesh: &Mesh) -> Vec<MaterialId> {
         let used = used_slots(mesh);
         (0..used.len())
-            .map(|slot| match used[slot] {
-                true => self.resolve(look, mesh.materials.get(slot)),
-                false => MaterialId(0),
+            .map(|slot| {
+                if used[slot] {
+                    self.resolve(look, mesh.materials.get(slot))
+                } else {
+                    MaterialId(0)
+                }
             })
             .collect()
     }

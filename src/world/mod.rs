@@ -6,11 +6,15 @@
 //!
 //! Deliberately absent: kernels, flat buffers, pixels.
 
+pub mod codes;
 mod components;
+mod files;
 mod pose;
+mod spawn;
 
 pub use components::{
     AuthoringIndex, Camera, Color, Emissive, Material, Name, Normals, Parent, Pose, Scattering,
     Shape, Spin, Transform,
 };
 pub use pose::{pose, poses};
+pub use spawn::{Spawned, spawn};

@@ -1,0 +1,283 @@
+//! Spawn: a description becomes a world, and the files that it names a store.
+
+use super::components::{
+    AuthoringIndex, Camera, Color, Emissive, Material, Name, Normals, Parent, Scattering, Shape,
+    Spin, Transform,
+};
+use super::{Pose, codes, files::Files, pose};
+use crate::asset::{AssetStore, Filter, Mesh, MeshId, Wrap};
+use crate::diag::{self, Diagnostic};
+use crate::math::{DMat3, DVec3, axis_angle_deg, euler_deg, quaternion, unit};
+use crate::scene::{
+    CameraDesc, CameraPose, ColorDesc, EntityDesc, MaterialDesc, NormalsDesc, RotateDesc,
+    SceneDesc, ShapeDesc, TextureFilterDesc, TransformDesc, WrapDesc,
+};
+use hecs::{Entity, EntityBuilder, World};
+
+/// What [`spawn`] gives.
+pub struct Spawned {
+    /// One entity for each of the scene's, and one for a camera at top level; posed at rest.
+    pub world: World,
+    /// Every file that the scene names.
+    pub assets: AssetStore,
+    /// What the files, and the use that the scene makes of them, should be told of.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// Loads every file and spawns every entity of a scene.
+///
+/// # Errors
+/// Everything that is wrong with files, each at the place in the scene that names the file or at its own line; textured
+/// materials on meshes without texture coordinates; entities out of reach.
+pub fn spawn(desc: &SceneDesc) -> Result<Spawned, Vec<Diagnostic>> {
+    let mut files = Files::new(desc);
+    let materials: Vec<Option<Material>> = desc
+        .materials
+        .iter()
+        .map(|m| material(&m.material, &mut files))
+        .collect();
+    let meshes: Vec<Option<MeshId>> = desc
+        .entities
+        .iter()
+        .map(|entity| match &entity.value.shape {
+            Some(ShapeDesc::Mesh(path)) => files.mesh(path),
+            _ => None,
+        })
+        .collect();
+    let (assets, mut warnings, mut errors) = files.finish();
+
+    let mut world = World::new();
+    let entities: Vec<Entity> = desc.entities.iter().map(|_| world.spawn(())).collect();
+    for (i, entity) in desc.entities.iter().enumerate() {
+        let entity = &entity.value;
+        let mut components = components(entity, i as u32, meshes[i]);
+        if let Some(parent) = entity.parent.and_then(|p| entities.get(p)) {
+            components.add(Parent(*parent));
+        }
+        if let Some(material) = entity.material.and_then(|m| *materials.get(m)?) {
+            components.add(material);
+        }
+        // The entity was spawned above, so the only error, "no such entity", cannot happen.
+        let _ = world.insert(entities[i], components.build());
+        if let Some(id) = meshes[i] {
+            let textured = entity
+                .material
+                .map(|m| is_textured(&desc.materials[m].material));
+            check_uv(
+                desc,
+                i,
+                textured,
+                assets.mesh(id),
+                &mut warnings,
+                &mut errors,
+            );
+        }
+    }
+    if let Some(camera) = &desc.camera {
+        let index = AuthoringIndex(desc.entities.len() as u32);
+        world.spawn((
+            index,
+            camera_transform(camera.pose.as_ref()),
+            camera_of(camera),
+        ));
+    }
+    pose(&mut world, 0.0);
+    errors.extend(out_of_reach(desc, &world, &entities));
+    if errors.is_empty() {
+        Ok(Spawned {
+            world,
+            assets,
+            warnings,
+        })
+    } else {
+        Err(errors)
+    }
+}
+
+/// The components that need neither other entities nor materials.
+fn components(entity: &EntityDesc, index: u32, mesh: Option<MeshId>) -> EntityBuilder {
+    let mut builder = EntityBuilder::new();
+    builder
+        .add(AuthoringIndex(index))
+        .add(transform(&entity.transform));
+    if let Some(name) = &entity.name {
+        builder.add(Name(name.clone()));
+    }
+    let shape = match &entity.shape {
+        Some(ShapeDesc::Sphere { radius, inverted }) => Some(Shape::Sphere {
+            radius: *radius,
+            inverted: *inverted,
+        }),
+        Some(ShapeDesc::Mesh(_)) => mesh.map(|mesh| Shape::Mesh {
+            mesh,
+            normals: normals(entity.normals),
+        }),
+        None => None,
+    };
+    if let Some(shape) = shape {
+        builder.add(shape);
+    }
+    if let Some(spin) = &entity.spin {
+        builder.add(Spin {
+            axis: DVec3::from_array(spin.axis),
+            deg_per_s: spin.deg_per_s,
+            pivot: spin.pivot.map(DVec3::from_array),
+        });
+    }
+    if let Some(radiance) = entity.emissive {
+        builder.add(Emissive(radiance));
+    }
+    if let Some(camera) = &entity.camera {
+        builder.add(camera_of(camera));
+    }
+    builder
+}
+
+fn normals(desc: Option<NormalsDesc>) -> Normals {
+    match desc {
+        None | Some(NormalsDesc::File) => Normals::File,
+        Some(NormalsDesc::Flat) => Normals::Flat,
+        Some(NormalsDesc::Smooth { angle_deg }) => Normals::Smooth { angle_deg },
+    }
+}
+
+fn transform(desc: &TransformDesc) -> Transform {
+    Transform {
+        translate: DVec3::from_array(desc.translate),
+        rotate: match desc.rotate {
+            RotateDesc::Euler(deg) => euler_deg(DVec3::from_array(deg)),
+            RotateDesc::AxisAngle { axis, deg } => axis_angle_deg(DVec3::from_array(axis), deg),
+            RotateDesc::Quat(q) => quaternion(q),
+        },
+        scale: DVec3::from_array(desc.scale),
+    }
+}
+
+fn camera_of(desc: &CameraDesc) -> Camera {
+    Camera {
+        vfov_deg: desc.vfov_deg,
+        aperture_radius: desc.aperture_radius,
+        focus_distance: desc.focus_distance,
+    }
+}
+
+/// Looks from `at` along −Z at `look_at`, with `up` in the plane of Y and Z. The reader has refused degenerate ones.
+fn camera_transform(pose: Option<&CameraPose>) -> Transform {
+    let Some(pose) = pose else {
+        return Transform::default();
+    };
+    let [at, look_at, up] = [pose.at, pose.look_at, pose.up].map(DVec3::from_array);
+    let forward = unit(look_at - at).unwrap_or(DVec3::NEG_Z);
+    let up = unit(up).unwrap_or(DVec3::Y);
+    let right = unit(forward.cross(up)).unwrap_or_else(|| forward.any_orthonormal_vector());
+    Transform {
+        translate: at,
+        rotate: DMat3::from_cols(right, right.cross(forward), -forward),
+        scale: DVec3::ONE,
+    }
+}
+
+fn material(desc: &MaterialDesc, files: &mut Files) -> Option<Material> {
+    let (scattering, color) = match desc {
+        MaterialDesc::Diffuse { color } => (Scattering::Diffuse, color),
+        MaterialDesc::Mirror { color } => (Scattering::Mirror, color),
+        MaterialDesc::Glass { ior, color } => (Scattering::Glass { ior: *ior }, color),
+        MaterialDesc::Plastic { ior, color } => (Scattering::Plastic { ior: *ior }, color),
+        MaterialDesc::Metal { color, .. } => (Scattering::Metal, color),
+    };
+    let color = match color {
+        ColorDesc::Linear(rgb) => Color::Linear(*rgb),
+        ColorDesc::Image { path, wrap, filter } => Color::Texture {
+            texture: files.texture(path)?,
+            wrap: match wrap {
+                WrapDesc::Repeat => Wrap::Repeat,
+                WrapDesc::Mirror => Wrap::Mirror,
+                WrapDesc::Clamp => Wrap::Clamp,
+            },
+            filter: match filter {
+                TextureFilterDesc::Bilinear => Filter::Bilinear,
+                TextureFilterDesc::Nearest => Filter::Nearest,
+            },
+        },
+        ColorDesc::Hdr(path) => {
+            files.refuse(
+                path,
+                diag::codes::NOT_YET,
+                "a material cannot have an HDR image yet",
+            );
+            return None;
+        }
+    };
+    Some(Material { scattering, color })
+}
+
+fn is_textured(material: &MaterialDesc) -> bool {
+    use MaterialDesc::{Diffuse, Glass, Metal, Mirror, Plastic};
+    let (Diffuse { color }
+    | Mirror { color }
+    | Glass { color, .. }
+    | Plastic { color, .. }
+    | Metal { color, .. }) = material;
+    matches!(color, ColorDesc::Image { .. })
+}
+
+/// Texture coordinates where they are needed: `textured` says so of the entity's material, if it has one.
+fn check_uv(
+    desc: &SceneDesc,
+    entity: usize,
+    textured: Option<bool>,
+    mesh: &Mesh,
+    warnings: &mut Vec<Diagnostic>,
+    errors: &mut Vec<Diagnostic>,
+) {
+    if mesh.uvs.iter().any(Option::is_some) {
+        return;
+    }
+    let file = mesh.path.display();
+    let place = |diagnostic: Diagnostic, component| {
+        let whole = (desc.entities[entity].at, desc.entities[entity].len);
+        let (at, len) = desc.place(entity, component).unwrap_or(whole);
+        diagnostic.in_file(&desc.file).at(&desc.source, at, len)
+    };
+    if textured == Some(true) {
+        let says = format!("this material is textured, but {file} has no texture coordinates");
+        let error = Diagnostic::error(codes::NO_UV, says)
+            .hint("give it a material of one colour, or add vt lines to the file");
+        errors.push(place(error, "material"));
+    }
+    if let (None, Some(m)) = (
+        textured,
+        mesh.materials.iter().find(|m| m.texture.is_some()),
+    ) {
+        let says = format!(
+            "the material \"{}\" of {file} is textured, but the file has no texture coordinates: \
+             one texel colours it",
+            m.name
+        );
+        warnings.push(place(
+            Diagnostic::warning(codes::FILE_WITHOUT_UV, says),
+            "shape",
+        ));
+    }
+}
+
+/// Entities whose composed place or size is not finite.
+fn out_of_reach(desc: &SceneDesc, world: &World, entities: &[Entity]) -> Vec<Diagnostic> {
+    let reachable = |entity: Entity| {
+        let pose = world.get::<&Pose>(entity).map(|p| *p).unwrap_or_default();
+        let radius = match world.get::<&Shape>(entity).as_deref() {
+            Ok(Shape::Sphere { radius, .. }) => *radius,
+            _ => 1.0,
+        };
+        pose.affine().is_finite() && (radius * pose.size).is_normal()
+    };
+    let lost = (0..entities.len()).filter(|i| !reachable(entities[*i]));
+    lost.map(|i| {
+        let (at, len) = (desc.entities[i].at, desc.entities[i].len);
+        let says = "the place or the size of this entity is beyond the range of 64-bit numbers";
+        Diagnostic::error(codes::OUT_OF_REACH, says)
+            .in_file(&desc.file)
+            .at(&desc.source, at, len)
+    })
+    .collect()
+}
