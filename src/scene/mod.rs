@@ -28,6 +28,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use values::ColorRole;
 
+#[cfg(test)]
+mod tests;
+
 /// The version of the format that this reader knows.
 pub const VERSION: u32 = 1;
 
