@@ -23,7 +23,9 @@ const BLACK: Colour = DVec3::new(0.06, 0.05, 0.05);
 /// Colour of a point of the surface, in [0, 1].
 pub(crate) fn colour(cat: &Cat, p: DVec3) -> [f64; 3] {
     let c = match cat.part(p) {
-        Part::Head | Part::EarLeft | Part::EarRight => head(to_head(p)),
+        Part::Head => head(to_head(p)),
+        Part::EarLeft => ear(to_head(p), DARK),
+        Part::EarRight => ear(to_head(p), GINGER),
         Part::Body => body(p),
         Part::Tail => tail(p),
         Part::ForeLeft => leg(p, 0.10, WHITE),
@@ -43,11 +45,13 @@ fn tabby(p: DVec3, s: f64, strength: f64) -> Colour {
     ground.lerp(STRIPE, strength * step(-0.1, 0.45, wave))
 }
 
-/// Stripes across the spine that fade towards the belly; a white bib down the chest.
+/// Stripes across the spine that fade towards the belly, a dark line along it; a white bib down the chest.
 fn body(p: DVec3) -> Colour {
-    let spine = p.y * 0.85 - p.z * 0.75;
+    let along = p.y * 0.86 + p.z * 0.51;
     let back = 1.0 - step(-0.02, 0.12, p.z - 0.12 * (p.y - 0.4));
-    let coat = tabby(p, spine * 11.0, 0.35 + 0.65 * back);
+    let line = step(0.032, 0.014, p.x.abs() + 0.01 * noise(p * 17.0))
+        * step(0.02, -0.06, p.z - 0.5 * (p.y - 0.5));
+    let coat = tabby(p, along * 12.0, 0.35 + 0.65 * back).lerp(STRIPE, line);
     let wobble = 0.025 * noise(p * 14.0);
     let width = 0.05 + 0.08 * step(0.66, 0.42, p.y);
     let bib = step(width + 0.02, width - 0.02, p.x.abs() + wobble) * step(0.02, 0.06, p.z + wobble);
@@ -71,7 +75,7 @@ fn leg(p: DVec3, sock: f64, sock_colour: Colour) -> Colour {
 
 /// Arcs around the haunch, and a white paw.
 fn hind(p: DVec3) -> Colour {
-    let arc = DVec2::new(p.z + 0.02, p.y - 0.1).length();
+    let arc = DVec2::new(p.z - 0.07, p.y - 0.02).length();
     let coat = tabby(p, arc * 14.0, 0.8);
     coat.lerp(
         WHITE,
@@ -91,10 +95,7 @@ fn head(q: DVec3) -> Colour {
 
     let patch =
         DVec2::new((q.x - 0.082) / 0.078, (q.y - 0.81) / 0.088).length() + 0.22 * noise(q * 18.0);
-    c = c.lerp(DARK, step(1.06, 0.94, patch) * step(0.0, 0.05, q.z));
-    if q.y > 0.87 && q.x > 0.05 {
-        c = c.lerp(DARK, step(0.875, 0.9, q.y + 0.02 * noise(q * 20.0)));
-    }
+    c = c.lerp(DARK, step(1.06, 0.94, patch) * step(0.085, 0.115, q.z));
     let front = step(0.1, 0.15, q.z);
     let muzzle = DVec2::new(q.x / 0.094, (q.y - 0.695) / 0.058).length() + 0.1 * noise(q * 20.0);
     let blaze = (side + 0.006 * noise(q * 30.0)) / (0.012 + 0.02 * step(0.83, 0.74, q.y));
@@ -102,10 +103,14 @@ fn head(q: DVec3) -> Colour {
         WHITE,
         front * step(1.06, 0.94, muzzle).max(step(1.15, 0.85, blaze) * step(0.87, 0.84, q.y)),
     );
-    if q.y > 0.86 {
-        c = c.lerp(PINK, step(0.012, 0.004, ear_cavity(q)));
-    }
     if q.z > 0.12 { mouth(eye(c, q), q) } else { c }
+}
+
+/// The colour of the ear's back, growing out of the head's, and pink skin in the cavity.
+fn ear(q: DVec3, back: Colour) -> Colour {
+    let grown = step(0.87, 0.9, q.y + 0.012 * noise(q * 25.0));
+    let skin = step(0.011, 0.003, ear_cavity(q));
+    head(q).lerp(back, grown).lerp(PINK, skin)
 }
 
 /// An almond with a dark lid, an iris, an upright pupil and a highlight (on the same side in both eyes).

@@ -12,12 +12,15 @@ mod shape;
 mod simple;
 mod unwrap;
 
+#[cfg(test)]
+mod tests;
+
 use clap::Parser;
 use std::io;
 use std::path::{Path, PathBuf};
 
 /// Triangles of the committed cat, about.
-const CAT_TRIANGLES: usize = 5000;
+const CAT_TRIANGLES: usize = 6000;
 /// Texels of the cat's texture.
 const CAT_TEXTURE: [usize; 2] = [1024, 512];
 const CAT_MTL: &str = "# The cat's coat.\nnewmtl fur\nKd 1 1 1\nmap_Kd cat.png\n";
@@ -49,7 +52,8 @@ fn write_all(folder: &Path, cat_triangles: usize) -> io::Result<()> {
 /// Every file: name and contents.
 fn assets(cat_triangles: usize) -> io::Result<Vec<(&'static str, Vec<u8>)>> {
     let cat = shape::Cat::sitting();
-    let mesh = net::mesh(&cat, cat_triangles);
+    let mesh = net::mesh(&cat, cat_triangles)
+        .ok_or_else(|| io::Error::other("no closed mesh found; try another number of triangles"))?;
     let layout = unwrap::unwrap(&cat, &mesh, CAT_TEXTURE);
     let texels = paint::paint(&mesh, &layout, CAT_TEXTURE, |p| coat::colour(&cat, p));
     let text = obj::write(&mesh, &layout, CAT_TEXTURE, |p| {

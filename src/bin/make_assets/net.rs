@@ -14,7 +14,14 @@ const RELAX_ROUNDS: usize = 12;
 const RELAX_STEP: f64 = 0.6;
 /// Triangles per (unit length / cell)²: twice the mean number of cells that a unit of the cat's surface crosses times
 /// its area; measured on this cat.
-const TRIANGLES_PER_CELL_AREA: f64 = 4.1;
+const TRIANGLES_PER_CELL_AREA: f64 = 5.4;
+
+/// Fewer could not show the ears.
+const FEWEST_TRIANGLES: usize = 1000;
+/// Where two sheets of the surface cross one cell, their quads share an edge. That depends on how the grid happens to
+/// lie: cell sizes tried before giving up, and how much smaller each is.
+const TRIES: u32 = 16;
+const TRY_STEP: f64 = 0.002;
 
 /// Triangles with shared vertices.
 pub(crate) struct Mesh {
@@ -23,10 +30,12 @@ pub(crate) struct Mesh {
     pub(crate) triangles: Vec<[usize; 3]>,
 }
 
-/// The cat with about the given number of triangles.
-pub(crate) fn mesh(cat: &Cat, triangles: usize) -> Mesh {
-    let cell = (TRIANGLES_PER_CELL_AREA / triangles.max(100) as f64).sqrt();
-    let (mut positions, quads) = Grid::sample(cat, cell).nets();
+/// The cat with about the given number of triangles, closed; `None` if no cell size tried gives a closed mesh.
+pub(crate) fn mesh(cat: &Cat, triangles: usize) -> Option<Mesh> {
+    let cell = (TRIANGLES_PER_CELL_AREA / triangles.max(FEWEST_TRIANGLES) as f64).sqrt();
+    let (mut positions, quads) = (0..TRIES)
+        .map(|k| Grid::sample(cat, cell * (1.0 - TRY_STEP * f64::from(k))).nets())
+        .find(|(_, quads)| is_closed(quads))?;
     let neighbours = neighbours(positions.len(), &quads);
     for _ in 0..RELAX_ROUNDS {
         let means: Vec<DVec3> = neighbours
@@ -42,10 +51,10 @@ pub(crate) fn mesh(cat: &Cat, triangles: usize) -> Mesh {
     }
     stand_on_ground(&mut positions);
     let triangles = quads.iter().flat_map(|&q| split(&positions, q)).collect();
-    Mesh {
+    Some(Mesh {
         positions,
         triangles,
-    }
+    })
 }
 
 /// Values of the field at grid points.
@@ -151,6 +160,19 @@ impl Grid {
         }
         sum / count
     }
+}
+
+/// Whether every side of a quad is a side of exactly one other quad, the other way round.
+fn is_closed(quads: &[[usize; 4]]) -> bool {
+    let mut sides: Vec<(usize, usize)> = quads
+        .iter()
+        .flat_map(|q| [0, 1, 2, 3].map(|k| (q[k], q[(k + 1) % 4])))
+        .collect();
+    sides.sort_unstable();
+    sides.windows(2).all(|w| w[0] != w[1])
+        && sides
+            .iter()
+            .all(|&(a, b)| sides.binary_search(&(b, a)).is_ok())
 }
 
 /// Vertices joined to each vertex by a side of a quad.

@@ -25,8 +25,6 @@ pub(crate) struct Layout {
     pub(crate) corners: Vec<[DVec2; 3]>,
     /// Chart of each triangle.
     pub(crate) chart: Vec<usize>,
-    /// Number of charts.
-    pub(crate) charts: usize,
 }
 
 type Label = (Part, usize);
@@ -56,11 +54,7 @@ pub(crate) fn unwrap(cat: &Cat, mesh: &Mesh, size: [usize; 2]) -> Layout {
             uv.map(|q| places[c].corner + (q - places[c].min) * scale + DVec2::splat(MARGIN))
         })
         .collect();
-    Layout {
-        corners,
-        chart,
-        charts,
-    }
+    Layout { corners, chart }
 }
 
 /// The triangle across each side (from corner k to k + 1). Sides without a partner point at their own triangle.
