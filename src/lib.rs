@@ -61,6 +61,7 @@
 pub mod asset;
 pub mod build;
 pub mod check;
+pub mod cli;
 pub mod diag;
 pub mod film;
 pub mod flat;

@@ -41,15 +41,6 @@ pub(super) struct RawEntity<'a> {
     pub(super) has_file: bool,
 }
 
-/// The place of a component of the entity that is written at `node`.
-pub(super) fn component_place<'a>(node: Node<'a>, component: &str) -> Option<Node<'a>> {
-    let fields = node.fields().ok()?;
-    fields
-        .iter()
-        .find(|pair| pair.key.text == component)
-        .map(|pair| pair.value)
-}
-
 pub(super) fn entity<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<RawEntity<'a>> {
     let fields = Fields::read(reader, node, "an entity", &COMPONENTS)?;
     motion::refuse(&fields);

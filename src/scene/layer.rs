@@ -93,6 +93,15 @@ impl<'a> Node<'a> {
             .collect())
     }
 
+    /// The value of one field, whatever stands before the parentheses.
+    pub(super) fn field(self, name: &str) -> Option<Node<'a>> {
+        let fields = self.head().1.fields().ok()?;
+        fields
+            .iter()
+            .find(|pair| pair.key.text == name)
+            .map(|pair| pair.value)
+    }
+
     /// The entries of `{key: value, ..}`, in order, duplicates included.
     pub(super) fn entries(self) -> Result<Vec<Pair<'a>>, LayerError> {
         if !self.text.starts_with('{') {

@@ -203,7 +203,17 @@ impl SceneDesc {
     pub fn place(&self, entity: usize, component: &str) -> Option<(usize, usize)> {
         let Placed { at, len, .. } = *self.entities.get(entity)?;
         let text = self.source.get(at..at + len)?;
-        let place = entity::component_place(Node { text, at }, component)?;
+        let place = Node { text, at }.field(component)?;
+        Some((place.at, place.text.len()))
+    }
+
+    /// The bytes of a setting such as `["render", "spp"]`; `None` where it is not written.
+    #[must_use]
+    pub fn setting_place(&self, path: &[&str]) -> Option<(usize, usize)> {
+        let document = Node::document(&self.source).ok()?;
+        let place = path
+            .iter()
+            .try_fold(document, |node, name| node.field(name))?;
         Some((place.at, place.text.len()))
     }
 }
