@@ -96,18 +96,17 @@ fn write_partial(output: &Output, rendering: &Rendering, encoding: &Encoding<'_>
 }
 
 /// The scene's settings, overridden by the arguments.
-fn settings(args: &RenderArgs, desc: &luxel::scene::SceneDesc) -> Settings {
-    let (width, height) = args.size.unwrap_or(desc.render.size);
+fn settings(args: &RenderArgs, desc: &SceneDesc) -> Settings {
+    let defaults = Settings::of_scene(desc);
     Settings {
-        size: (width, height),
-        frame: args.frame,
-        spp: args.spp.unwrap_or(desc.render.spp),
+        size: args.size.unwrap_or(defaults.size),
+        spp: args.spp.unwrap_or(defaults.spp),
         time: args.time,
         threads: args.threads.map(usize::from),
         tile: args.tile,
         accel: args.accel.into(),
         trace: TraceOptions {
-            max_bounces: args.bounces.unwrap_or(desc.render.max_bounces),
+            max_bounces: args.bounces.unwrap_or(defaults.trace.max_bounces),
             seed: args.seed,
             sampler: args.sampler.into(),
             nee: args.nee.is_on(),

@@ -5,7 +5,7 @@ use super::passes::Passes;
 use super::tiles::{self, Tile};
 use super::{Control, Settings, Stages, Stats};
 use crate::asset::AssetStore;
-use crate::build::{BuildOptions, SceneBuilder};
+use crate::build::{BuildOptions, BuildTimes, SceneBuilder};
 use crate::film::{Film, Metadata, Planes, Window};
 use crate::flat::{FlatScene, PixelFilter};
 use crate::scene::{ColorDesc, FilterDesc, SceneDesc};
@@ -67,30 +67,27 @@ impl Renderer {
         &self.hash
     }
 
-    /// Poses the world at `frame / fps` seconds and builds what tracing reads.
-    pub fn build(&mut self, frame: u32) -> (FlatScene, Stages) {
+    /// Poses the world at `frame / fps` seconds and builds what tracing reads. Posing counts as extraction.
+    pub fn build(&mut self, frame: u32) -> (FlatScene, BuildTimes) {
         let start = Instant::now();
         pose(&mut self.world, f64::from(frame) / self.fps);
         let posing = start.elapsed();
         let (world, builder) = (&self.world, &mut self.builder);
-        let (scene, times) = self.pool.install(|| builder.build(world, frame));
-        let stages = Stages {
-            extract: posing + times.extract,
-            flatten: times.flatten,
-            bvh: times.bvh,
-            ..Stages::default()
-        };
-        (scene, stages)
+        let (scene, mut times) = self.pool.install(|| builder.build(world, frame));
+        times.extract += posing;
+        (scene, times)
     }
 
     /// Renders a frame, or as much of it as [`Settings::time`] and `control` allow.
     pub fn render(&mut self, frame: u32, control: &Control) -> Rendering {
         let deadline = self.settings.time.map(|time| Instant::now() + time);
-        let (scene, stages) = self.build(frame);
+        let (scene, times) = self.build(frame);
         let (film, mut stats) = self.trace(&scene, control, deadline);
         stats.stages = Stages {
-            trace: stats.stages.trace,
-            ..stages
+            extract: times.extract,
+            flatten: times.flatten,
+            bvh: times.bvh,
+            ..stats.stages
         };
         Rendering {
             film,

@@ -1,6 +1,7 @@
 //! What a frame is rendered with.
 
 use crate::build::Accel;
+use crate::scene::SceneDesc;
 use crate::trace::TraceOptions;
 use std::time::Duration;
 
@@ -26,4 +27,21 @@ pub struct Settings {
 impl Settings {
     /// Side of a tile: small enough that the last tiles leave no thread idle for long, large enough for a batch.
     pub const DEFAULT_TILE: u32 = 32;
+
+    /// What a scene file asks for, exactly and with all that the machine has.
+    #[must_use]
+    pub fn of_scene(desc: &SceneDesc) -> Settings {
+        Settings {
+            size: desc.render.size,
+            spp: desc.render.spp,
+            time: None,
+            threads: None,
+            tile: Settings::DEFAULT_TILE,
+            accel: Accel::default(),
+            trace: TraceOptions {
+                max_bounces: desc.render.max_bounces,
+                ..TraceOptions::default()
+            },
+        }
+    }
 }
