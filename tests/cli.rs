@@ -1,0 +1,426 @@
+//! The command from outside: exit codes, messages, files written whole or not at all.
+
+use std::fs;
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+const SCENE: &str = r#"Scene(
+    version: 1,
+    camera: (at: (0, 0, 5), look_at: (0, 0, 0)),
+    render: (size: (40, 24), spp: 3, max_bounces: 3),
+    materials: { "chalk": Diffuse(color: Linear(0.8, 0.6, 0.4)) },
+    entities: [
+        (name: "lamp", shape: Sphere(radius: 1), transform: (translate: (0, 4, 2)), emissive: (radiance: (9, 9, 9))),
+        (name: "ball", shape: Sphere(radius: 1), material: "chalk"),
+    ],
+)
+"#;
+
+/// A folder of this test's own, with `scene.ron` in it; gone when dropped.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Folder {
+        let path = std::env::temp_dir().join(format!("luxel-cli-{name}-{}", std::process::id()));
+        fs::create_dir_all(&path).expect("a temporary folder");
+        fs::write(path.join("scene.ron"), SCENE).expect("writable");
+        Folder(path)
+    }
+
+    fn command(&self, args: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_luxel"));
+        command.args(args).current_dir(&self.0).env("NO_COLOR", "1");
+        command
+    }
+
+    fn run(&self, args: &[&str]) -> Output {
+        self.command(args).output().expect("luxel runs")
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+
+    fn bytes(&self, name: &str) -> Vec<u8> {
+        fs::read(self.path(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
+    }
+
+    /// Names in the folder, sorted.
+    fn names(&self) -> Vec<String> {
+        let entries = fs::read_dir(&self.0).expect("there").flatten();
+        let mut names: Vec<String> = entries
+            .map(|e| e.file_name().to_string_lossy().into_owned())
+            .collect();
+        names.sort();
+        names
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// Asserts the exit code and that stderr has all the words, and shows stderr if not.
+#[track_caller]
+fn expect(output: &Output, code: i32, words: &[&str]) {
+    let talk = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{talk}");
+    for word in words {
+        assert!(talk.contains(word), "no \"{word}\" in:\n{talk}");
+    }
+}
+
+#[test]
+fn help_shows_what_exists_and_how() {
+    let folder = Folder::new("help");
+    let top = folder.run(&["--help"]);
+    expect(&top, 0, &[]);
+    let top = text(&top.stdout);
+    for word in ["render", "check", "explain", "Examples:", "Exit codes:"] {
+        assert!(top.contains(word), "no {word} in:\n{top}");
+    }
+    let render = text(&folder.run(&["render", "--help"]).stdout);
+    let flags = [
+        "--output",
+        "--spp",
+        "--time",
+        "--size",
+        "--frame",
+        "--bounces",
+        "--exposure",
+        "--seed",
+        "--sampler",
+        "--threads",
+        "--isa",
+        "--accel",
+        "--tile",
+        "--aov",
+        "--nee",
+        "--mis",
+        "--roulette",
+        "--fresnel",
+        "--stats",
+        "Examples:",
+        "[default: 32]",
+        "geonormal",
+    ];
+    for flag in flags {
+        assert!(render.contains(flag), "no {flag} in:\n{render}");
+    }
+    for later in ["animate", "turntable", "--noise"] {
+        assert!(!top.contains(later) && !render.contains(later), "{later}");
+    }
+    expect(&folder.run(&[]), 2, &["Usage:"]);
+    assert_eq!(text(&folder.run(&["--version"]).stdout), "luxel 0.1.0\n");
+}
+
+#[test]
+fn wrong_arguments_are_explained_and_cost_nothing() {
+    let folder = Folder::new("usage");
+    let cases: &[(&[&str], &[&str])] = &[
+        (&["--threads", "0"], &["--threads", "1..=1024"]),
+        (&["--spp", "0"], &["--spp", "1..="]),
+        (&["--spp", "many"], &["--spp", "many"]),
+        (&["--tile", "0"], &["--tile", "1..="]),
+        (&["--bounces", "-1"], &["-1"]),
+        (&["--size", "0x5"], &["--size", "640x360"]),
+        (&["--size", "32768x32768"], &["pixels"]),
+        (&["--time", "5"], &["--time", "30s"]),
+        (&["--exposure", "NaN"], &["--exposure", "stops"]),
+        (&["--isa", "neon"], &["neon", "scalar"]),
+        (&["--nee", "maybe"], &["on, off"]),
+        (&["--aov", "normall"], &["normall", "'normal'"]),
+        (&["--aov", "normal"], &["PNG", "normal", ".exr"]),
+        (&["-o", "a.bmp"], &["a.bmp", ".png", ".exr"]),
+        (&["-o", "a"], &["\"a\"", ".png"]),
+        (&["--stats", "scene.ron"], &["scene.ron", ".json"]),
+        (&["--sp", "3"], &["--spp"]),
+    ];
+    for (flags, words) in cases {
+        let args: Vec<&str> = ["render", "scene.ron"]
+            .iter()
+            .chain(*flags)
+            .copied()
+            .collect();
+        expect(&folder.run(&args), 2, words);
+    }
+    expect(&folder.run(&["rendr", "scene.ron"]), 2, &["render"]);
+    assert_eq!(folder.names(), ["scene.ron"]);
+}
+
+#[test]
+fn missing_and_bad_inputs_have_their_codes() {
+    let folder = Folder::new("inputs");
+    for command in ["render", "check", "explain"] {
+        expect(
+            &folder.run(&[command, "no.ron"]),
+            66,
+            &["no.ron", "no such file"],
+        );
+    }
+    let bad = SCENE.replace("\"chalk\")", "\"chalck\")");
+    fs::write(folder.path("bad.ron"), bad).expect("writable");
+    for command in ["render", "check", "explain"] {
+        let words = ["bad.ron:8:", "chalck", "did you mean"];
+        expect(&folder.run(&[command, "bad.ron"]), 65, &words);
+    }
+    let mesh = SCENE.replace("Sphere(radius: 1), material", "Mesh(\"no.obj\"), material");
+    fs::write(folder.path("mesh.ron"), mesh).expect("writable");
+    expect(
+        &folder.run(&["render", "mesh.ron"]),
+        65,
+        &["mesh.ron", "no.obj"],
+    );
+    fs::write(folder.path("noise.ron"), [0xff, 0x00, 0xfe]).expect("writable");
+    expect(&folder.run(&["render", "noise.ron"]), 65, &["noise.ron"]);
+    expect(&folder.run(&["check", "."]), 66, &["cannot read"]);
+    assert_eq!(
+        folder.names(),
+        ["bad.ron", "mesh.ron", "noise.ron", "scene.ron"]
+    );
+}
+
+#[test]
+fn unwritable_outputs_fail_before_rendering() {
+    let folder = Folder::new("unwritable");
+    fs::create_dir(folder.path("folder.png")).expect("writable");
+    let start = Instant::now();
+    for output in ["no/such/a.png", "folder.png", "scene.ron/a.exr"] {
+        // A minute of rendering if the check came late.
+        let args = [
+            "render",
+            "scene.ron",
+            "-o",
+            output,
+            "--spp",
+            "16777216",
+            "--time",
+            "1m",
+        ];
+        expect(&folder.run(&args), 74, &[output, "cannot write"]);
+    }
+    let args = [
+        "render",
+        "scene.ron",
+        "--stats",
+        "no/such/s.json",
+        "--time",
+        "1m",
+    ];
+    expect(&folder.run(&args), 74, &["s.json"]);
+    assert!(start.elapsed() < Duration::from_secs(30));
+    assert_eq!(folder.names(), ["folder.png", "scene.ron"]);
+}
+
+#[test]
+fn a_render_leaves_its_file_its_path_and_a_summary() {
+    let folder = Folder::new("render");
+    let output = folder.run(&["render", "scene.ron", "--stats", "s.json"]);
+    expect(
+        &output,
+        0,
+        &["scene.png · 40×24 · 3 spp", "Mrays/s", "extract", "tree"],
+    );
+    assert_eq!(text(&output.stdout), "scene.png\n");
+    assert_eq!(folder.names(), ["s.json", "scene.png", "scene.ron"]);
+    let stats: serde_json::Value = serde_json::from_slice(&folder.bytes("s.json")).expect("JSON");
+    assert_eq!(stats["spp"], 3);
+    assert_eq!(stats["samples"], 40 * 24 * 3);
+    assert_eq!(stats["stopped"], false);
+}
+
+#[test]
+fn equal_renders_are_equal_files() {
+    let folder = Folder::new("equal");
+    let aovs = "albedo,normal,geonormal,depth,uv,prim,entity,samples,stderr";
+    let variants: [&[&str]; 4] = [
+        &["--threads", "1", "--tile", "32"],
+        &["--threads", "2", "--tile", "7"],
+        &["--threads", "5", "--tile", "64", "--accel", "brute"],
+        &["--isa", "scalar", "--accel", "box"],
+    ];
+    for (i, flags) in variants.iter().enumerate() {
+        let (png, exr) = (format!("{i}.png"), format!("{i}.exr"));
+        let render = ["render", "scene.ron", "-o"];
+        let for_png = [&render[..], &[&png], flags].concat();
+        let for_exr = [&render[..], &[&exr, "--aov", aovs], flags].concat();
+        expect(&folder.run(&for_png), 0, &[]);
+        expect(&folder.run(&for_exr), 0, &[]);
+        assert!(folder.bytes(&png) == folder.bytes("0.png"), "{flags:?}");
+        assert!(folder.bytes(&exr) == folder.bytes("0.exr"), "{flags:?}");
+    }
+    expect(
+        &folder.run(&["render", "scene.ron", "-o", "seed.exr", "--seed", "1"]),
+        0,
+        &[],
+    );
+    expect(
+        &folder.run(&["render", "scene.ron", "-o", "none.exr"]),
+        0,
+        &[],
+    );
+    assert!(folder.bytes("seed.exr") != folder.bytes("none.exr"));
+    // The scene's place is no part of what made the picture.
+    fs::create_dir(folder.path("moved")).expect("writable");
+    fs::copy(folder.path("scene.ron"), folder.path("moved/other.ron")).expect("writable");
+    expect(&folder.run(&["render", "moved/other.ron"]), 0, &[]);
+    assert!(folder.bytes("other.png") == folder.bytes("0.png"));
+}
+
+#[test]
+fn stdout_takes_the_picture_and_nothing_else() {
+    let folder = Folder::new("stdout");
+    let piped = folder.run(&["render", "scene.ron", "-o", "-"]);
+    expect(&piped, 0, &["stdout · 40×24"]);
+    assert_eq!(folder.names(), ["scene.ron"]);
+    expect(&folder.run(&["render", "scene.ron"]), 0, &[]);
+    assert!(piped.stdout == folder.bytes("scene.png"));
+}
+
+#[test]
+fn check_and_explain_answer_people_and_scripts() {
+    let folder = Folder::new("inspect");
+    expect(
+        &folder.run(&["check", "scene.ron"]),
+        0,
+        &["scene.ron: no errors, no warnings"],
+    );
+    let unused = SCENE.replace("{ \"chalk\"", "{ \"gold\": Metal, \"chalk\"");
+    fs::write(folder.path("unused.ron"), unused).expect("writable");
+    expect(
+        &folder.run(&["check", "unused.ron"]),
+        0,
+        &["gold", "no errors, 1 warning"],
+    );
+    let json = folder.run(&["check", "--json", "unused.ron"]);
+    expect(&json, 0, &[]);
+    let found: serde_json::Value = serde_json::from_slice(&json.stdout).expect("JSON");
+    assert_eq!(found[0]["severity"], "warning");
+    fs::write(folder.path("bad.ron"), SCENE.replace("spp: 3", "spp: 0")).expect("writable");
+    let json = folder.run(&["check", "--json", "bad.ron"]);
+    expect(&json, 65, &[]);
+    let found: serde_json::Value = serde_json::from_slice(&json.stdout).expect("JSON");
+    assert_eq!(found[0]["line"], 4);
+
+    let explained = text(&folder.run(&["explain", "scene.ron"]).stdout);
+    for words in [
+        "diffuse",
+        "asked for by \"ball\"",
+        "asked for by \"lamp\"",
+        "not needed",
+        "40x24",
+    ] {
+        assert!(explained.contains(words), "no {words} in:\n{explained}");
+    }
+    let json = folder.run(&["explain", "--json", "scene.ron"]);
+    let explained: serde_json::Value = serde_json::from_slice(&json.stdout).expect("JSON");
+    assert_eq!(explained["settings"]["spp"], "3");
+    assert_eq!(explained["hash"].as_str().map(str::len), Some(64));
+}
+
+#[test]
+fn a_reader_that_leaves_is_no_panic() {
+    let folder = Folder::new("pipe");
+    for args in [
+        &["explain", "scene.ron"][..],
+        &["render", "scene.ron", "-o", "-"],
+    ] {
+        let mut child = folder
+            .command(args)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("luxel runs");
+        drop(child.stdout.take());
+        expect(&child.wait_with_output().expect("it ends"), 0, &[]);
+    }
+}
+
+#[test]
+fn time_ends_a_render_with_a_whole_picture() {
+    let folder = Folder::new("time");
+    let args = [
+        "render",
+        "scene.ron",
+        "--time",
+        "300ms",
+        "--spp",
+        "16777216",
+        "--stats",
+        "s.json",
+    ];
+    let start = Instant::now();
+    expect(&folder.run(&args), 0, &["scene.png"]);
+    assert!(start.elapsed() < Duration::from_secs(20));
+    let stats: serde_json::Value = serde_json::from_slice(&folder.bytes("s.json")).expect("JSON");
+    let spp = stats["spp"].as_u64().expect("a number");
+    assert!((1..16_777_216).contains(&spp), "{spp}");
+    assert_eq!(stats["samples"], 40 * 24 * spp, "every pixel has as many");
+    assert_eq!(stats["stopped"], false);
+    // The recorded count makes the same file again.
+    let spp = spp.to_string();
+    expect(
+        &folder.run(&["render", "scene.ron", "--spp", &spp, "-o", "again.png"]),
+        0,
+        &[],
+    );
+    assert!(folder.bytes("again.png") == folder.bytes("scene.png"));
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_saves_what_there_is() {
+    let folder = Folder::new("interrupt");
+    // An unused material: its warning on stderr says that the signal has its handler.
+    let scene = SCENE.replace("{ \"chalk\"", "{ \"gold\": Metal, \"chalk\"");
+    fs::write(folder.path("scene.ron"), scene).expect("writable");
+    for (signal, name) in [("INT", "a.png"), ("TERM", "b.exr")] {
+        let args = ["render", "scene.ron", "--spp", "16777216", "-o", name];
+        let mut child = folder
+            .command(&args)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("luxel runs");
+        let mut talk = BufReader::new(child.stderr.take().expect("piped"));
+        let mut line = String::new();
+        talk.read_line(&mut line).expect("a warning");
+        assert!(line.contains("gold"), "{line}");
+        std::thread::sleep(Duration::from_millis(700));
+        let pid = child.id().to_string();
+        let sent = Command::new("kill").args(["-s", signal, &pid]).status();
+        assert!(sent.expect("kill runs").success());
+        let said: Vec<String> = talk.lines().map_while(Result::ok).collect();
+        let output = child.wait_with_output().expect("it ends");
+        assert_eq!(output.status.code(), Some(130), "{said:?}");
+        let partial = name.replace('.', ".partial.");
+        assert_eq!(text(&output.stdout), format!("{partial}\n"));
+        assert!(
+            said.iter().any(|l| l.contains("samples per pixel")),
+            "{said:?}"
+        );
+        assert!(folder.path(&partial).is_file());
+        assert!(!folder.path(name).exists());
+    }
+    assert_eq!(
+        folder.names(),
+        ["a.partial.png", "b.partial.exr", "scene.ron"]
+    );
+}
+
+#[test]
+fn nothing_is_left_beside_the_picture() {
+    let folder = Folder::new("beside");
+    expect(&folder.run(&["render", "scene.ron", "-o", "a.exr"]), 0, &[]);
+    expect(&folder.run(&["render", "scene.ron", "-o", "a.exr"]), 0, &[]);
+    assert_eq!(folder.names(), ["a.exr", "scene.ron"]);
+    assert!(Path::new(&folder.path("a.exr")).is_file());
+}
