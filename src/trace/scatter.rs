@@ -66,7 +66,8 @@ impl Local {
 
     /// Where rays towards `dir` start.
     fn origin(&self, dir: Vec3) -> Vec3 {
-        offset_origin(self.position, self.ng, self.err, dir)
+        let (p, ng) = (self.position.to_array(), self.ng.to_array());
+        Vec3::from(offset_origin(p, ng, self.err, dir.to_array()))
     }
 
     /// Cosine at the shading normal; 0 below either surface.

@@ -2,9 +2,9 @@
 
 use super::vector::{get, set, unit};
 use super::wave::{Paths, Wave};
-use super::{Hits, texture::eval_texture};
+use super::{Hits, spawn, texture::eval_texture};
 use crate::flat::{ColorSource, FlatScene, Geometry, Instance, Scatter, Spheres};
-use crate::math::{DVec3, Vec3, acos, atan2};
+use crate::math::{Vec3, acos, atan2};
 
 /// A point of a surface.
 struct Point {
@@ -42,44 +42,25 @@ pub(super) fn surface(wave: &mut Wave, scene: &FlatScene) {
 fn point(scene: &FlatScene, paths: &Paths, hits: &Hits, i: usize) -> Point {
     let (prim, instance) = (hits.prim[i], hits.instance[i]);
     if prim & Spheres::TAG != 0 {
-        return sphere_point(
-            scene,
-            get(&paths.rays.origin, i),
-            get(&paths.rays.dir, i),
-            hits.t[i],
-            prim & !Spheres::TAG,
-        );
+        let ray = [get(&paths.rays.origin, i).to_array(), get(&paths.rays.dir, i).to_array()];
+        return on_sphere(scene, ray, hits.t[i], (prim & !Spheres::TAG) as usize);
     }
-    let (u, v) = (hits.u[i], hits.v[i]);
+    let weights = [hits.u[i], hits.v[i]];
     if instance == Hits::WORLD {
-        let local = triangle_point(&scene.world, prim, u, v);
-        return Point {
-            ng: unit(local.ng),
-            ..local
-        };
+        return on_triangle(&scene.world, prim, weights);
     }
     let instance = &scene.instances[instance as usize];
-    let local = triangle_point(&scene.local[instance.geometry as usize], prim, u, v);
+    let local = on_triangle(&scene.local[instance.geometry as usize], prim, weights);
     to_world(scene, instance, local)
 }
 
-/// Interpolates in the geometry's own space; `ng` is not yet of unit length.
-fn triangle_point(geometry: &Geometry, prim: u32, u: f32, v: f32) -> Point {
-    let place = geometry.triangles.place[prim as usize] as usize;
-    let block = &geometry.triangles.blocks[place / crate::flat::BLOCK];
-    let lane = place % crate::flat::BLOCK;
-    let vertex = |k: usize| {
-        Vec3::new(
-            block.v[k][0][lane],
-            block.v[k][1][lane],
-            block.v[k][2][lane],
-        )
-    };
-    let (a, b, c) = (vertex(0), vertex(1), vertex(2));
+/// Interpolates in the geometry's own space.
+fn on_triangle(geometry: &Geometry, prim: u32, [u, v]: [f32; 2]) -> Point {
+    let vertices = spawn::triangle_vertices(&geometry.triangles, prim);
+    let ng = Vec3::from(spawn::triangle_normal(vertices));
     let w = 1.0 - u - v;
     let shading = &geometry.shading;
     let corner = 3 * prim as usize;
-    let ng = (b - a).cross(c - a);
     let ns = match shading.normals.corner.get(corner..corner + 3) {
         Some(n) => Vec3::from(n[0]) * w + Vec3::from(n[1]) * u + Vec3::from(n[2]) * v,
         None => ng,
@@ -89,7 +70,7 @@ fn triangle_point(geometry: &Geometry, prim: u32, u: f32, v: f32) -> Point {
         None => [0.0; 2],
     };
     Point {
-        position: a * w + b * u + c * v,
+        position: Vec3::from(spawn::triangle_point(vertices, u, v)),
         ng,
         ns: facing(ns, ng),
         uv,
@@ -100,55 +81,35 @@ fn triangle_point(geometry: &Geometry, prim: u32, u: f32, v: f32) -> Point {
 /// A shading normal as a unit vector on the side of the geometric normal; that one where it has no direction.
 fn facing(ns: Vec3, ng: Vec3) -> Vec3 {
     let length = ns.length_squared();
-    let ns = if length > 0.0 && length.is_finite() {
-        unit(ns)
-    } else {
-        unit(ng)
-    };
+    let ns = if length > 0.0 && length.is_finite() { unit(ns) } else { ng };
     if ns.dot(ng) < 0.0 { -ns } else { ns }
 }
 
-/// Positions by the matrix, normals by the transpose of its inverse.
+/// Positions by the matrix, normals by the transpose of its inverse: an outward normal stays outward, mirrored or not.
 fn to_world(scene: &FlatScene, instance: &Instance, local: Point) -> Point {
-    let m = &instance.to_world;
-    let p = local.position;
-    let row = |r: &[f32; 4]| r[0] * p.x + r[1] * p.y + r[2] * p.z + r[3];
-    let position = Vec3::new(row(&m[0]), row(&m[1]), row(&m[2]));
-    let w = &instance.to_local;
-    let normal = |n: Vec3| {
-        let axis = |k: usize| w[0][k] * n.x + w[1][k] * n.y + w[2][k] * n.z;
-        Vec3::new(axis(0), axis(1), axis(2))
-    };
-    let sign = if instance.mirrored { -1.0 } else { 1.0 };
-    let ng = unit(normal(unit(local.ng))) * sign;
-    let ns = facing(normal(local.ns), ng);
-    let material =
-        scene.instance_materials[instance.materials as usize + local.material as usize].0;
+    let ng = Vec3::from(spawn::instance_normal(instance, local.ng.to_array()));
+    let ns = Vec3::from(spawn::instance_normal(instance, local.ns.to_array()));
+    let slot = instance.materials as usize + local.material as usize;
     Point {
-        position,
+        position: Vec3::from(spawn::instance_point(instance, local.position.to_array())),
         ng,
-        ns,
+        ns: facing(ns, ng),
         uv: local.uv,
-        material,
+        material: scene.instance_materials[slot].0,
     }
 }
 
-/// The hit of a sphere, put back onto it: p = C + r n in f64, rounded once.
-fn sphere_point(scene: &FlatScene, origin: Vec3, dir: Vec3, t: f32, sphere: u32) -> Point {
-    let s = sphere as usize;
+/// The hit of a sphere, put back onto it.
+fn on_sphere(scene: &FlatScene, ray: [[f32; 3]; 2], t: f32, s: usize) -> Point {
     let spheres = &scene.spheres;
-    let center = DVec3::from(spheres.center[s]);
-    let p = origin.as_dvec3() + dir.as_dvec3() * f64::from(t);
-    let d = p - center;
-    let outward = d * (1.0 / d.length_squared().sqrt());
-    let position = (center + outward * spheres.radius[s]).as_vec3();
-    let n = unit(outward.as_vec3());
-    let ng = if spheres.inverted[s] { -n } else { n };
+    let (position, outward) = spawn::sphere_point(ray, t, spheres.center[s], spheres.radius[s]);
+    let outward = Vec3::from(outward);
+    let ng = if spheres.inverted[s] { -outward } else { outward };
     Point {
-        position,
+        position: Vec3::from(position),
         ng,
         ns: ng,
-        uv: sphere_uv(spheres, s, n),
+        uv: sphere_uv(spheres, s, outward),
         material: spheres.material[s].0,
     }
 }
