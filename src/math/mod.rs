@@ -2,8 +2,7 @@
 //! depend on the machine.
 
 pub mod aabb;
-pub mod func;
-pub mod rotation;
+pub(crate) mod lanes;
 
 pub use aabb::Aabb;
 pub use func::{acos, atan2, cos, exp, ln, pow, sin, sin_cos, sin_cos_turns, tan};

@@ -9,22 +9,17 @@
 mod camera;
 pub mod fresnel;
 pub mod isa;
-mod light;
+pub mod kernels;
 pub mod options;
 mod path;
 pub mod rays;
-mod sampler;
-mod scatter;
 pub mod spawn;
-mod surface;
-#[cfg(test)]
-mod test_support;
-pub mod texture;
 pub mod tile;
 mod vector;
 mod wave;
 
 pub use isa::Isa;
+pub use kernels::{closest_hit, occluded};
 pub use options::{Fresnel, Sampler, TraceOptions};
 pub use path::Tracer;
 pub use rays::{Hits, Rays};

@@ -1,6 +1,154 @@
-//! stub
-use crate::math::Vec3;
-/// stub
-pub fn offset_origin(p: Vec3, ng: Vec3, err: f32, dir: Vec3) -> Vec3 {
-    p + ng * err.copysign(dir.dot(ng))
+//! Where a hit is and where the next ray starts: positions, geometric normals, and the offset by the hit's error bound.
+//!
+//! [`super::Hits::err`] bounds what these functions compute, so surfaces and the next rays are made with them alone.
+//! Deliberately absent: any absolute epsilon.
+
+use crate::flat::{BLOCK, Instance, Triangles};
+
+/// γ(n) = n ε / (1 − n ε), ε = 2⁻²⁴: bound on the relative error of n roundings (Higham, *Accuracy and Stability of
+/// Numerical Algorithms*, lemma 3.1).
+#[must_use]
+pub const fn gamma(n: u32) -> f32 {
+    let e = n as f32 * (f32::EPSILON / 2.0);
+    e / (1.0 - e)
+}
+
+/// Vertices of a triangle in its geometry's space.
+#[must_use]
+#[inline(always)]
+pub fn triangle_vertices(triangles: &Triangles, prim: u32) -> [[f32; 3]; 3] {
+    let place = triangles.place[prim as usize] as usize;
+    let (v, lane) = (&triangles.blocks[place / BLOCK].v, place % BLOCK);
+    [
+        [v[0][0][lane], v[0][1][lane], v[0][2][lane]],
+        [v[1][0][lane], v[1][1][lane], v[1][2][lane]],
+        [v[2][0][lane], v[2][1][lane], v[2][2][lane]],
+    ]
+}
+
+/// The point of a triangle with weights (1 − b1 − b2, b1, b2).
+#[must_use]
+#[inline(always)]
+pub fn triangle_point(v: [[f32; 3]; 3], b1: f32, b2: f32) -> [f32; 3] {
+    let b0 = 1.0 - b1 - b2;
+    let mut p = [0.0; 3];
+    for axis in 0..3 {
+        p[axis] = b0 * v[0][axis] + b1 * v[1][axis] + b2 * v[2][axis];
+    }
+    p
+}
+
+/// The unit normal of a triangle, towards the side from which its vertices run counter-clockwise; computed in f64, since a
+/// sliver's cross product cancels. 0 for a triangle without area.
+#[must_use]
+#[inline(always)]
+pub fn triangle_normal(v: [[f32; 3]; 3]) -> [f32; 3] {
+    let edge = |k: usize, axis: usize| f64::from(v[k][axis]) - f64::from(v[0][axis]);
+    let [a, b] = [
+        [edge(1, 0), edge(1, 1), edge(1, 2)],
+        [edge(2, 0), edge(2, 1), edge(2, 2)],
+    ];
+    normalized([
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ])
+}
+
+/// A local point in scene units; f64 inside, rounded once.
+#[must_use]
+#[inline(always)]
+pub fn instance_point(instance: &Instance, p: [f32; 3]) -> [f32; 3] {
+    let [x, y, z] = [f64::from(p[0]), f64::from(p[1]), f64::from(p[2])];
+    let mut world = [0.0; 3];
+    for axis in 0..3 {
+        let m = instance.to_world[axis];
+        let sum = f64::from(m[0]) * x + f64::from(m[1]) * y + f64::from(m[2]) * z;
+        world[axis] = (sum + f64::from(m[3])) as f32;
+    }
+    world
+}
+
+/// A local normal in the scene, unit: by the transpose of `to_local`. A mirroring instance keeps its direction; whether that
+/// is the outside is the caller's to say.
+#[must_use]
+#[inline(always)]
+pub fn instance_normal(instance: &Instance, n: [f32; 3]) -> [f32; 3] {
+    let w = &instance.to_local;
+    let mut world = [0.0; 3];
+    for axis in 0..3 {
+        world[axis] = f64::from(w[0][axis]) * f64::from(n[0])
+            + f64::from(w[1][axis]) * f64::from(n[1])
+            + f64::from(w[2][axis]) * f64::from(n[2]);
+    }
+    normalized(world)
+}
+
+/// The point of a sphere that a ray meets at `t`, with its outward unit normal: o + t d reprojected to C + r n in f64, then
+/// rounded.
+#[must_use]
+#[inline(always)]
+pub fn sphere_point(
+    [origin, dir]: [[f32; 3]; 2],
+    t: f32,
+    center: [f64; 3],
+    radius: f64,
+) -> ([f32; 3], [f32; 3]) {
+    let mut from_center = [0.0; 3];
+    for axis in 0..3 {
+        let p = f64::from(origin[axis]) + f64::from(t) * f64::from(dir[axis]);
+        from_center[axis] = p - center[axis];
+    }
+    let length = length(from_center);
+    let [mut point, mut normal] = [[0.0; 3]; 2];
+    for axis in 0..3 {
+        let n = from_center[axis] / length;
+        point[axis] = (center[axis] + radius * n) as f32;
+        normal[axis] = n as f32;
+    }
+    (point, normal)
+}
+
+/// The origin of a ray that leaves `p` in direction `dir`: `p` moved by `err` along the geometric normal to the side that
+/// the ray goes to, then every component rounded away from the surface (pbrt's `OffsetRayOrigin`, 4th ed., §6.8.6).
+#[must_use]
+#[inline(always)]
+pub fn offset_origin(p: [f32; 3], ng: [f32; 3], err: f32, dir: [f32; 3]) -> [f32; 3] {
+    let mut cos = 0.0;
+    for axis in 0..3 {
+        cos += f64::from(ng[axis]) * f64::from(dir[axis]);
+    }
+    let distance = if cos < 0.0 { -err } else { err };
+    let mut origin = p;
+    for axis in 0..3 {
+        let offset = distance * ng[axis];
+        let moved = p[axis] + offset;
+        origin[axis] = if offset > 0.0 {
+            moved.next_up()
+        } else if offset < 0.0 {
+            moved.next_down()
+        } else {
+            moved
+        };
+    }
+    origin
+}
+
+#[inline(always)]
+fn length(v: [f64; 3]) -> f64 {
+    (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt()
+}
+
+#[inline(always)]
+fn normalized(v: [f64; 3]) -> [f32; 3] {
+    let length = length(v);
+    if length > 0.0 {
+        [
+            (v[0] / length) as f32,
+            (v[1] / length) as f32,
+            (v[2] / length) as f32,
+        ]
+    } else {
+        [0.0; 3]
+    }
 }

@@ -1,0 +1,92 @@
+//! Lanes: vectors of f32 with companion vectors of f64 of the same count. The one home of intrinsics.
+//!
+//! Kernels are written once, generic over [`Lanes`]. Backends: [`f32`] itself (one lane), [`portable`] arrays of eight,
+//! [`avx2`] (eight) and [`avx512`] (sixteen). All of them round alike, lane by lane, so that a kernel's bits do not depend on
+//! the backend: nothing here is fused, approximate or reordered.
+//!
+//! Every function is `#[inline(always)]` and none has `#[target_feature]`, which stands on the top function of a batch only:
+//! an intrinsic is inlined once its caller has arrived there. Hence the rule that makes the intrinsics sound: **a value of
+//! [`avx2`] or [`avx512`] exists only inside an entry that a [`crate::trace::Isa`] of that level guards**, which is the proof
+//! that the machine has the instructions. The module is private to the crate for that reason.
+//!
+//! Deliberately absent: integers, shuffles, reductions, fused and approximate operations.
+
+#[cfg(target_arch = "x86_64")]
+pub(crate) mod avx2;
+#[cfg(target_arch = "x86_64")]
+pub(crate) mod avx512;
+pub(crate) mod portable;
+mod scalar;
+#[cfg(test)]
+mod tests;
+
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
+
+/// Lanes of f32.
+pub(crate) trait Lanes:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// Their number.
+    const N: usize;
+    /// One truth value per lane.
+    type Mask: Copy + BitAnd<Output = Self::Mask> + BitOr<Output = Self::Mask>;
+    /// As many lanes of f64.
+    type Wide: WideLanes;
+
+    /// `x` in every lane, bit for bit.
+    fn splat(x: f32) -> Self;
+    /// The first `N` elements.
+    fn load(from: &[f32]) -> Self;
+    /// Overwrites the first `N` elements.
+    fn store(self, to: &mut [f32]);
+    /// `self < other`; false with NaN, like every comparison here.
+    fn lt(self, other: Self) -> Self::Mask;
+    /// `self <= other`.
+    fn le(self, other: Self) -> Self::Mask;
+    /// `yes` where the mask is set, else `no`, bit for bit.
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+    /// Lane i in bit i.
+    fn bits(mask: Self::Mask) -> u32;
+    /// Without the sign bit.
+    fn abs(self) -> Self;
+    /// `if self < other { self } else { other }`: with NaN, `other`.
+    fn min(self, other: Self) -> Self;
+    /// `if self > other { self } else { other }`: with NaN, `other`.
+    fn max(self, other: Self) -> Self;
+    /// The same values in f64.
+    fn widen(self) -> Self::Wide;
+    /// Rounded to nearest, ties to even.
+    fn narrow(wide: Self::Wide) -> Self;
+}
+
+/// Lanes of f64.
+pub(crate) trait WideLanes:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// `x` in every lane.
+    fn splat(x: f64) -> Self;
+    /// The first elements, as many as there are lanes.
+    fn load(from: &[f64]) -> Self;
+    /// Correctly rounded.
+    fn sqrt(self) -> Self;
+    /// Magnitude of `self`, sign bit of `sign`.
+    fn copysign(self, sign: Self) -> Self;
+    /// `if self < other { self } else { other }`.
+    fn min(self, other: Self) -> Self;
+    /// `if self > other { self } else { other }`.
+    fn max(self, other: Self) -> Self;
+    /// `if self > 0 { self } else { other }`.
+    fn positive_or(self, other: Self) -> Self;
+    /// Whether any lane is `>= 0`.
+    fn any_not_negative(self) -> bool;
+}

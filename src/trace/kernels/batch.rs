@@ -1,0 +1,253 @@
+//! The kernels over a whole batch: rays in lanes against the spheres outside the tree, then one ray after the other
+//! through the tree. Everything here is inlined into an entry of `super::entries`.
+
+use super::bound;
+use super::ray::WalkRay;
+use super::sphere::WideRay;
+use super::walk::{Best, LocalTrees, NoInstances, Stack, Tree, walk};
+use crate::flat::bvh::STACK;
+use crate::flat::{BLOCK, FlatScene, Spheres};
+use crate::math::lanes::{Lanes, WideLanes};
+use crate::trace::{Hits, Rays};
+
+/// The widest lanes of all.
+const MOST_LANES: usize = 16;
+
+/// The elements from `at` on; zeros beyond the end, with which no ray hits anything.
+#[inline(always)]
+fn load<L: Lanes>(from: &[f32], at: usize) -> L {
+    if at + L::N <= from.len() {
+        return L::load(&from[at..]);
+    }
+    let mut padded = [0.0; MOST_LANES];
+    for (to, from) in padded.iter_mut().zip(&from[at..]) {
+        *to = *from;
+    }
+    L::load(&padded)
+}
+
+/// Overwrites the elements from `at` on, as far as there are any.
+#[inline(always)]
+fn store<L: Lanes>(lanes: L, to: &mut [f32], at: usize) {
+    if at + L::N <= to.len() {
+        return lanes.store(&mut to[at..]);
+    }
+    let mut padded = [0.0; MOST_LANES];
+    lanes.store(&mut padded);
+    for (to, from) in to[at..].iter_mut().zip(&padded) {
+        *to = *from;
+    }
+}
+
+#[inline(always)]
+fn load3<L: Lanes>(from: &[Vec<f32>; 3], at: usize) -> [L; 3] {
+    [load(&from[0], at), load(&from[1], at), load(&from[2], at)]
+}
+
+/// Sphere `lane` of a block in all lanes.
+macro_rules! sphere_in_lanes {
+    ($block:ident, $lane:ident, $lanes:ident) => {
+        (
+            [
+                $lanes::Wide::splat($block.center[0][$lane]),
+                $lanes::Wide::splat($block.center[1][$lane]),
+                $lanes::Wide::splat($block.center[2][$lane]),
+            ],
+            $lanes::Wide::splat($block.radius[$lane]),
+        )
+    };
+}
+
+/// Every looped sphere against `L::N` rays at a time. On entry `hits.t` are limits: hits below count.
+#[inline(always)]
+pub(super) fn looped_closest<L: Lanes>(spheres: &Spheres, rays: &Rays, hits: &mut Hits) {
+    let zero = L::splat(0.0);
+    let mut at = 0;
+    while at < rays.len() {
+        let [origin, dir]: [[L; 3]; 2] = [load3(&rays.origin, at), load3(&rays.dir, at)];
+        let ray = WideRay::new(origin, dir);
+        let mut best: L = load(&hits.t, at);
+        // Ids travel as bits: they are selected and stored, never computed with.
+        let mut prim = L::splat(f32::from_bits(Hits::NONE));
+        for block in &spheres.looped {
+            for lane in 0..BLOCK {
+                let id = block.prim[lane];
+                if id == u32::MAX {
+                    break;
+                }
+                let (center, radius) = sphere_in_lanes!(block, lane, L);
+                if let Some(t) = ray.root::<L>(center, radius) {
+                    let closer = zero.lt(t) & t.lt(best);
+                    best = L::select(closer, t, best);
+                    let id = L::splat(f32::from_bits(Spheres::TAG | id));
+                    prim = L::select(closer, id, prim);
+                }
+            }
+        }
+        store(best, &mut hits.t, at);
+        let err = looped_errors(spheres, [origin, dir], best, prim, &mut hits.prim[at..]);
+        store(err, &mut hits.err, at);
+        at += L::N;
+    }
+}
+
+/// Writes the ids down and gathers their spheres for the error bounds.
+#[inline(always)]
+fn looped_errors<L: Lanes>(
+    spheres: &Spheres,
+    [origin, dir]: [[L; 3]; 2],
+    t: L,
+    prim: L,
+    out: &mut [u32],
+) -> L {
+    let mut ids = [0.0; MOST_LANES];
+    prim.store(&mut ids);
+    let mut center = [[0.0; MOST_LANES]; 3];
+    let mut radius = [1.0; MOST_LANES];
+    let lanes = if out.len() < L::N { out.len() } else { L::N };
+    for lane in 0..lanes {
+        let id = ids[lane].to_bits();
+        out[lane] = id;
+        if id != Hits::NONE {
+            let i = (id & !Spheres::TAG) as usize;
+            let c = spheres.center[i];
+            center[0][lane] = c[0] as f32;
+            center[1][lane] = c[1] as f32;
+            center[2][lane] = c[2] as f32;
+            radius[lane] = spheres.radius[i] as f32;
+        }
+    }
+    let center = [
+        L::load(&center[0]),
+        L::load(&center[1]),
+        L::load(&center[2]),
+    ];
+    bound::sphere_error([origin, dir], t, center, L::load(&radius))
+}
+
+/// Whether any looped sphere is hit below `t_max`.
+#[inline(always)]
+pub(super) fn looped_occluded<L: Lanes>(spheres: &Spheres, rays: &Rays, out: &mut [bool]) {
+    let zero = L::splat(0.0);
+    let all = u32::MAX >> (u32::BITS - L::N as u32);
+    let mut at = 0;
+    while at < rays.len() {
+        let ray = WideRay::new::<L>(load3(&rays.origin, at), load3(&rays.dir, at));
+        let limit: L = load(&rays.t_max, at);
+        let mut blocked = 0;
+        'spheres: for block in &spheres.looped {
+            for lane in 0..BLOCK {
+                if block.prim[lane] == u32::MAX {
+                    break;
+                }
+                let (center, radius) = sphere_in_lanes!(block, lane, L);
+                if let Some(t) = ray.root::<L>(center, radius) {
+                    blocked |= L::bits(zero.lt(t) & t.lt(limit));
+                    if blocked == all {
+                        break 'spheres;
+                    }
+                }
+            }
+        }
+        for (lane, out) in out[at..].iter_mut().take(L::N).enumerate() {
+            *out = blocked >> lane & 1 == 1;
+        }
+        at += L::N;
+    }
+}
+
+/// Every ray through the world's tree. `hits` hold what the looped spheres left.
+#[inline(always)]
+pub(super) fn tree_closest<L: Lanes, const T: bool, const S: bool, const I: bool>(
+    scene: &FlatScene,
+    rays: &Rays,
+    hits: &mut Hits,
+) {
+    let [mut stack, mut local_stack] = [[(0, 0, 0.0); STACK]; 2];
+    let tree = world(scene);
+    for i in 0..rays.len() {
+        let origin = [rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]];
+        let dir = [rays.dir[0][i], rays.dir[1][i], rays.dir[2][i]];
+        let Some(ray) = WalkRay::<L>::new(origin, dir) else {
+            continue;
+        };
+        let mut best = Best::below(hits.t[i]);
+        best.prim = hits.prim[i];
+        let before = best.prim;
+        walk_world::<L, T, S, I, false>(
+            scene,
+            &tree,
+            &ray,
+            [&mut stack, &mut local_stack],
+            &mut best,
+        );
+        if best.prim != before {
+            hits.t[i] = best.t;
+            hits.u[i] = best.u;
+            hits.v[i] = best.v;
+            hits.prim[i] = best.prim;
+            hits.instance[i] = best.instance;
+            hits.err[i] = bound::hit_error(scene, [origin, dir], &best);
+        }
+    }
+}
+
+/// Whether anything in the world's tree is hit below `t_max`; rays that are blocked already stay so.
+#[inline(always)]
+pub(super) fn tree_occluded<L: Lanes, const T: bool, const S: bool, const I: bool>(
+    scene: &FlatScene,
+    rays: &Rays,
+    out: &mut [bool],
+) {
+    let [mut stack, mut local_stack] = [[(0, 0, 0.0); STACK]; 2];
+    let tree = world(scene);
+    for i in 0..rays.len() {
+        // A limit of NaN is one below which nothing lies.
+        let counts = rays.t_max[i] > 0.0;
+        if out[i] || !counts {
+            continue;
+        }
+        let origin = [rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]];
+        let dir = [rays.dir[0][i], rays.dir[1][i], rays.dir[2][i]];
+        let Some(ray) = WalkRay::<L>::new(origin, dir) else {
+            continue;
+        };
+        out[i] = walk_world::<L, T, S, I, true>(
+            scene,
+            &tree,
+            &ray,
+            [&mut stack, &mut local_stack],
+            &mut Best::below(rays.t_max[i]),
+        );
+    }
+}
+
+#[inline(always)]
+fn world(scene: &FlatScene) -> Tree<'_> {
+    Tree {
+        bvh: &scene.world.bvh,
+        triangles: &scene.world.triangles.blocks,
+        spheres: &scene.spheres.blocks,
+        instance: Hits::WORLD,
+        floor: 0.0,
+    }
+}
+
+#[inline(always)]
+fn walk_world<L: Lanes, const T: bool, const S: bool, const I: bool, const ANY: bool>(
+    scene: &FlatScene,
+    tree: &Tree,
+    ray: &WalkRay<L>,
+    [stack, local_stack]: [&mut Stack; 2],
+    best: &mut Best,
+) -> bool {
+    if I {
+        let mut instances = LocalTrees {
+            scene,
+            stack: local_stack,
+        };
+        walk::<L, _, T, S, ANY>(tree, ray, &mut instances, stack, best)
+    } else {
+        walk::<L, _, T, S, ANY>(tree, ray, &mut NoInstances, stack, best)
+    }
+}

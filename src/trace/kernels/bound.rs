@@ -1,0 +1,122 @@
+//! `Hits::err`: how far, along the geometric normal, the position that the surface stage computes may be from the surface,
+//! as the next ray's test sees it. The positions are those of [`crate::trace::spawn`].
+
+use super::walk::Best;
+use crate::flat::{FlatScene, Instance, Spheres};
+use crate::math::lanes::Lanes;
+use crate::trace::Hits;
+use crate::trace::spawn::{
+    gamma, instance_normal, instance_point, triangle_normal, triangle_point, triangle_vertices,
+};
+
+/// Two roundings to f32, where one happens: p is rounded once; the other half is slack for the rounding of this bound.
+const ROUNDING: f32 = f32::EPSILON;
+
+/// Error of the f32 estimate of p, `o + t d`, in the bound: 2⁻⁴⁴ of its terms, twice 2⁻²³ · 2⁻²² being too small to matter
+/// unless p itself is near 0.
+const ESTIMATE: f32 = 1.0 / (1u64 << 44) as f32;
+
+/// Error of a component of the unit normal estimated in f32, relative to (|o| + |t d| + |C|) / r.
+const NORMAL: f32 = 4.0 * f32::EPSILON;
+
+/// f64 terms, 2⁻⁵⁰ (|C| + r): the reprojection and the next ray's `c = oc·oc − r²` round a handful of numbers of that size
+/// by 2⁻⁵³.
+const WIDE: f32 = 1.0 / (1u64 << 50) as f32;
+
+/// A direction that leaves by less than an f32 normal's error, 2⁻²³, may point inward by as much: at a distance of
+/// r 2⁻⁴⁶ from the sphere it still passes.
+const GRAZING: f32 = 1.0 / (1u64 << 46) as f32;
+
+/// The bound for a sphere: p is reprojected in f64 to C + r n, then rounded to f32. Σ |nᵢ| ulp(pᵢ) with the normal and the
+/// position estimated in f32 lanes, and what happens in f64.
+#[inline(always)]
+pub(super) fn sphere_error<L: Lanes>(
+    [origin, dir]: [[L; 3]; 2],
+    t: L,
+    center: [L; 3],
+    radius: L,
+) -> L {
+    let one = L::splat(1.0);
+    let inv_radius = one / radius;
+    let mut err = L::splat(GRAZING) * radius;
+    let mut size = radius;
+    for axis in 0..3 {
+        let along = t * dir[axis];
+        let p = origin[axis] + along;
+        let terms = origin[axis].abs() + along.abs();
+        let beside = (p - center[axis]).abs();
+        let doubt = L::splat(NORMAL) * (terms + center[axis].abs());
+        let normal = ((beside + doubt) * inv_radius).min(one);
+        err = err + normal * (L::splat(ROUNDING) * p.abs() + L::splat(ESTIMATE) * terms);
+        size = size + center[axis].abs();
+    }
+    err + L::splat(WIDE) * size
+}
+
+/// The bound for any hit; called once per ray, for the hit that stands.
+#[inline(always)]
+pub(super) fn hit_error(scene: &FlatScene, ray: [[f32; 3]; 2], hit: &Best) -> f32 {
+    if hit.prim & Spheres::TAG != 0 {
+        let i = (hit.prim & !Spheres::TAG) as usize;
+        let [x, y, z] = scene.spheres.center[i];
+        let center = [x as f32, y as f32, z as f32];
+        return sphere_error(ray, hit.t, center, scene.spheres.radius[i] as f32);
+    }
+    if hit.instance == Hits::WORLD {
+        let v = triangle_vertices(&scene.world.triangles, hit.prim);
+        return along(triangle_normal(v), triangle_error(v, hit.u, hit.v));
+    }
+    let instance = &scene.instances[hit.instance as usize];
+    let local = &scene.local[instance.geometry as usize];
+    let v = triangle_vertices(&local.triangles, hit.prim);
+    let normal = instance_normal(instance, triangle_normal(v));
+    along(normal, instance_error(instance, v, hit.u, hit.v))
+}
+
+/// Σ |nᵢ| Eᵢ.
+#[inline(always)]
+fn along(normal: [f32; 3], error: [f32; 3]) -> f32 {
+    normal[0].abs() * error[0] + normal[1].abs() * error[1] + normal[2].abs() * error[2]
+}
+
+/// By component, for p = b0 v0 + b1 v1 + b2 v2 in f32: γ₇ (|b0 v0| + |b1 v1| + |b2 v2|), as in pbrt (Pharr, Jakob and
+/// Humphreys, *Physically Based Rendering*, 4th ed., §6.8.5).
+#[inline(always)]
+fn triangle_error(v: [[f32; 3]; 3], b1: f32, b2: f32) -> [f32; 3] {
+    let b0 = 1.0 - b1 - b2;
+    let mut error = [0.0; 3];
+    for axis in 0..3 {
+        let sum = (b0 * v[0][axis]).abs() + (b1 * v[1][axis]).abs() + (b2 * v[2][axis]).abs();
+        error[axis] = gamma(7) * sum;
+    }
+    error
+}
+
+/// By component in world space, for a point of an instance: |M| times the local bound; going to world,
+/// γ₃ (|M| |p| + |m|) (entries and result are rounded); and, since the next ray comes back to the local space before it is
+/// tested, |M| γ₆ (|W| |p'| + |w|) with W = M⁻¹ (four roundings of the product, one of its entries, one of slack). The
+/// same terms as in NVIDIA's OptiX toolkit, *SelfIntersectionAvoidance*.
+#[inline(always)]
+fn instance_error(instance: &Instance, v: [[f32; 3]; 3], b1: f32, b2: f32) -> [f32; 3] {
+    let local = triangle_point(v, b1, b2);
+    let world = instance_point(instance, local);
+    let mut inside = triangle_error(v, b1, b2);
+    for axis in 0..3 {
+        inside[axis] += gamma(6) * magnitude(instance.to_local[axis], world);
+    }
+    let mut error = [0.0; 3];
+    for axis in 0..3 {
+        let m = instance.to_world[axis];
+        error[axis] = gamma(3) * magnitude(m, local)
+            + m[0].abs() * inside[0]
+            + m[1].abs() * inside[1]
+            + m[2].abs() * inside[2];
+    }
+    error
+}
+
+/// |row| · (|p|, 1).
+#[inline(always)]
+fn magnitude(row: [f32; 4], p: [f32; 3]) -> f32 {
+    (row[0] * p[0]).abs() + (row[1] * p[1]).abs() + (row[2] * p[2]).abs() + row[3].abs()
+}

@@ -1,0 +1,177 @@
+//! Watertight ray–triangle intersection in lanes: Woop, Benthin and Wald, *Watertight Ray/Triangle Intersection*, JCGT
+//! 2(1), 2013.
+//!
+//! Neighbours see the same bits of the ends of their common edge, and the edge function of one is the exact negative of the
+//! other's, since `a·d − b·c` is written as two rounded products and one rounded difference: a fused operation here would
+//! open cracks.
+
+use super::ray::WalkRay;
+use crate::flat::{BLOCK, TriangleBlock};
+use crate::math::lanes::Lanes;
+use crate::trace::spawn::gamma;
+
+/// Hits of a block's lanes; lanes that hit nothing hold anything.
+pub(super) struct Candidates {
+    pub(super) t: [f32; BLOCK],
+    pub(super) u: [f32; BLOCK],
+    pub(super) v: [f32; BLOCK],
+}
+
+/// Vertices relative to the ray's origin, sheared along it: `p[vertex]` is x, y and z before scaling by 1 / d[kz].
+struct Sheared<L> {
+    p: [[L; 3]; 3],
+}
+
+/// Edge functions and their sum.
+struct Edges<L> {
+    e: [L; 3],
+    det: L,
+}
+
+/// Tests the `L::N` triangles from lane `at` on; returns the lanes that hit, in bits from 0 on.
+///
+/// A hit's t exceeds its own error bound, so that it is above 0 whatever the rounding; it is clamped into the widened slab
+/// interval of the triangle's own box (a candidate whose interval is empty is none), raised to `floor`, and at most `limit`.
+#[inline(always)]
+pub(super) fn test<L: Lanes>(
+    ray: &WalkRay<L>,
+    block: &TriangleBlock,
+    at: usize,
+    [floor, limit]: [f32; 2],
+    out: &mut Candidates,
+) -> u32 {
+    let sheared = Sheared::new(ray, block, at);
+    let Edges { e, det } = sheared.edges();
+    let zero = L::splat(0.0);
+    let positive = zero.le(e[0]) & zero.le(e[1]) & zero.le(e[2]);
+    let negative = e[0].le(zero) & e[1].le(zero) & e[2].le(zero);
+    let inside = (positive | negative) & zero.lt(det.abs());
+    if L::bits(inside) == 0 {
+        return 0;
+    }
+    let z = [
+        sheared.p[0][2] * ray.shear[2],
+        sheared.p[1][2] * ray.shear[2],
+        sheared.p[2][2] * ray.shear[2],
+    ];
+    let t = (e[0] * z[0] + e[1] * z[1] + e[2] * z[2]) / det;
+    let bound = sheared.t_error(e, z) / det.abs();
+    let own = own_box(ray, block, at);
+    let clamped = t.min(own.far).max(own.near).max(L::splat(floor));
+    clamped.store(&mut out.t[at..]);
+    (e[1] / det).store(&mut out.u[at..]);
+    (e[2] / det).store(&mut out.v[at..]);
+    let counts = bound.lt(t) & zero.lt(clamped) & clamped.le(L::splat(limit));
+    L::bits(inside & own.near.le(own.far) & counts) << at
+}
+
+impl<L: Lanes> Sheared<L> {
+    #[inline(always)]
+    fn new(ray: &WalkRay<L>, block: &TriangleBlock, at: usize) -> Sheared<L> {
+        let [kx, ky, kz] = ray.axes;
+        let zero = L::splat(0.0);
+        let mut p = [[zero; 3]; 3];
+        for (out, vertex) in p.iter_mut().zip(&block.v) {
+            let z = L::load(&vertex[kz][at..]) - ray.origin[kz];
+            let x = L::load(&vertex[kx][at..]) - ray.origin[kx];
+            let y = L::load(&vertex[ky][at..]) - ray.origin[ky];
+            *out = [x + ray.shear[0] * z, y + ray.shear[1] * z, z];
+        }
+        Sheared { p }
+    }
+
+    #[inline(always)]
+    fn edges(&self) -> Edges<L> {
+        let [a, b, c] = self.p;
+        let e = [
+            b[0] * c[1] - b[1] * c[0],
+            c[0] * a[1] - c[1] * a[0],
+            a[0] * b[1] - a[1] * b[0],
+        ];
+        Edges {
+            e,
+            det: e[0] + e[1] + e[2],
+        }
+    }
+
+    /// Bound on the rounding error of Σ e z, the numerator of t: after pbrt-v4's Triangle::Intersect (Pharr, Jakob and
+    /// Humphreys, *Physically Based Rendering*, 4th ed., §6.8.3), but with z before scaling in the error of x and y, so
+    /// that it holds for directions of any length.
+    #[inline(always)]
+    fn t_error(&self, e: [L; 3], z: [L; 3]) -> L {
+        let [a, b, c] = self.p;
+        let x = largest([a[0], b[0], c[0]]);
+        let y = largest([a[1], b[1], c[1]]);
+        let depth = largest([a[2], b[2], c[2]]);
+        let [z, e] = [largest(z), largest(e)];
+        let [g2, g3, g5] = [L::splat(gamma(2)), L::splat(gamma(3)), L::splat(gamma(5))];
+        let x_error = g5 * (x + depth);
+        let y_error = g5 * (y + depth);
+        let z_error = g3 * z;
+        let e_error = L::splat(2.0) * (g2 * x * y + y_error * x + x_error * y);
+        L::splat(3.0) * (g3 * e * z + e_error * z + z_error * e)
+    }
+}
+
+#[inline(always)]
+fn largest<L: Lanes>(x: [L; 3]) -> L {
+    x[0].abs().max(x[1].abs()).max(x[2].abs())
+}
+
+/// The widened slab interval of the triangle's own box.
+#[inline(always)]
+fn own_box<L: Lanes>(
+    ray: &WalkRay<L>,
+    block: &TriangleBlock,
+    at: usize,
+) -> super::ray::Interval<L> {
+    let zero = L::splat(0.0);
+    let [mut min, mut max] = [[zero; 3]; 2];
+    for axis in 0..3 {
+        let a = L::load(&block.v[0][axis][at..]);
+        let b = L::load(&block.v[1][axis][at..]);
+        let c = L::load(&block.v[2][axis][at..]);
+        min[axis] = a.min(b).min(c);
+        max[axis] = a.max(b).max(c);
+    }
+    ray.box_of(min, max)
+}
+
+/// Bound on |t − t*| of a hit, for tests: `t` as computed before clamping, t* exact for the same f32 numbers.
+///
+/// The numerator's bound and that of the sum of the edge functions, over the latter; but never more than the depth of the
+/// triangle, since both t and t* are means of its vertices' depths. Infinite when the edge functions are all error.
+#[must_use]
+pub fn t_error_bound(vertices: [[f32; 3]; 3], origin: [f32; 3], dir: [f32; 3]) -> f32 {
+    let mut block = TriangleBlock {
+        v: [[[0.0; BLOCK]; 3]; 3],
+        prim: [0; BLOCK],
+    };
+    for (k, vertex) in vertices.iter().enumerate() {
+        for axis in 0..3 {
+            block.v[k][axis] = [vertex[axis]; BLOCK];
+        }
+    }
+    let Some(ray) = WalkRay::<f32>::new(origin, dir) else {
+        return f32::INFINITY;
+    };
+    let sheared = Sheared::new(&ray, &block, 0);
+    let Edges { e, det } = sheared.edges();
+    let z = sheared.p.map(|p| p[2] * ray.shear[2]);
+    let numerator = sheared.t_error(e, z);
+    let unit_depths = [1.0; 3];
+    let denominator = sheared.t_error(e, unit_depths);
+    let t = (e[0] * z[0] + e[1] * z[1] + e[2] * z[2]) / det;
+    let left = det.abs() - denominator;
+    let first = if left > 0.0 {
+        (numerator + t.abs() * denominator) / left
+    } else {
+        f32::INFINITY
+    };
+    let [low, high] = z
+        .iter()
+        .fold([f32::INFINITY, f32::NEG_INFINITY], |[l, h], &z| {
+            [l.min(z), h.max(z)]
+        });
+    first.min((high - low) + gamma(5) * largest(z))
+}
