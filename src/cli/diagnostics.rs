@@ -173,9 +173,8 @@ error[E012]: there is no é
   |       ^ did you mean e?
 
 warning[W001]: nothing shines
- --> a.ron
-  |
-  = help: add a light
+--> a.ron
+ = help: add a light
 
 error[E900]: alone
 ";

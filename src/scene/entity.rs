@@ -5,7 +5,7 @@ use super::motion;
 use super::reader::{Fields, Reader};
 use super::schema::{EntityDesc, NormalsDesc, RotateDesc, ShapeDesc, SpinDesc, TransformDesc};
 use super::settings;
-use super::values::Domain;
+use super::values::{Domain, MAX_RADIANCE};
 use crate::diag::codes;
 
 /// Every component, in the order of the format's description.
@@ -159,7 +159,7 @@ fn spin<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<SpinDesc> {
 fn emissive<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<[f64; 3]> {
     let fields = Fields::read(reader, node, "`emissive`", &["radiance"])?;
     fields.require("radiance", |r, n| {
-        r.vector(n, "`radiance`", Domain::NonNegative)
+        r.vector(n, "`radiance`", Domain::UpTo(MAX_RADIANCE))
     })
 }
 

@@ -154,7 +154,9 @@ impl<'a> Node<'a> {
             Some(b'[') => "a list [..]",
             Some(b'{') => "a map {..}",
             Some(b'(') => return self.kind_of_parentheses(),
-            Some(b'0'..=b'9' | b'-' | b'+' | b'.') if body.text.contains("..") => "a range",
+            Some(b'0'..=b'9' | b'-' | b'+' | b'.') if body.text.contains("..") => {
+                return format!("the range {}", body.text);
+            }
             Some(b'0'..=b'9' | b'-' | b'+' | b'.') => return format!("the number {}", body.text),
             _ => "something else",
         };

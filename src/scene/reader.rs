@@ -93,9 +93,14 @@ impl<'a> Reader<'a> {
 
     /// Reports that `name` must be `wanted`.
     pub(super) fn wrong_type<T>(&self, node: Node<'_>, name: &str, wanted: &str) -> Option<T> {
+        let place = if node.head().0.is_some() {
+            node.head_place()
+        } else {
+            node
+        };
         self.error(
             codes::WRONG_TYPE,
-            node,
+            place,
             format!("{name} must be {wanted}, found {}", node.kind()),
         );
         None
@@ -117,7 +122,7 @@ impl<'a> Reader<'a> {
         self.error_hint(
             codes::UNKNOWN_VARIANT,
             node.head_place(),
-            format!("there is no `{found}` for {name}"),
+            format!("{name} cannot be `{found}`"),
             suggest(found, known.iter().copied()).map_or_else(
                 || format!("it is one of {}", known.join(", ")),
                 |best| format!("did you mean `{best}`?"),
@@ -154,6 +159,8 @@ pub(super) struct Fields<'r, 'a> {
     node: Node<'a>,
     what: &'static str,
     pairs: Vec<Pair<'a>>,
+    /// Known fields that an unknown one was probably meant to be; that they are missing goes without saying.
+    misspelt: Vec<&'static str>,
 }
 
 impl<'r, 'a> Fields<'r, 'a> {
@@ -166,11 +173,14 @@ impl<'r, 'a> Fields<'r, 'a> {
     ) -> Option<Fields<'r, 'a>> {
         let wanted = format!("written with named fields ({})", known.join(", "));
         let pairs = reader.layer(node, node.fields(), what, &wanted)?;
+        let mut misspelt = Vec::new();
         let mut kept: Vec<Pair<'a>> = Vec::with_capacity(pairs.len());
         for pair in pairs {
             let key = pair.key.text;
             if !known.contains(&key) {
-                let hint = suggest(key, known.iter().copied()).map_or_else(
+                let meant = suggest(key, known.iter().copied());
+                misspelt.extend(meant);
+                let hint = meant.map_or_else(
                     || format!("its fields are {}", known.join(", ")),
                     |best| format!("did you mean `{best}`?"),
                 );
@@ -197,6 +207,7 @@ impl<'r, 'a> Fields<'r, 'a> {
             node,
             what,
             pairs: kept,
+            misspelt,
         })
     }
 
@@ -244,23 +255,21 @@ impl<'r, 'a> Fields<'r, 'a> {
         name: &str,
         read: impl FnOnce(&Reader<'a>, Node<'a>) -> Option<T>,
     ) -> Option<T> {
-        let Some(node) = self.get(name) else {
-            let place = if self.node.text.is_empty() {
-                Node {
-                    at: self.node.at.saturating_sub(1),
-                    ..self.node
-                }
-            } else {
-                self.node
-            };
-            self.reader.error(
-                codes::MISSING_FIELD,
-                place,
-                format!("{} needs `{name}`", self.what),
-            );
-            return None;
-        };
-        read(self.reader, node)
+        if let Some(node) = self.get(name) {
+            return read(self.reader, node);
+        }
+        if !self.misspelt.contains(&name) {
+            let message = format!("{} needs `{name}`", self.what);
+            self.reader
+                .error(codes::MISSING_FIELD, self.place(), message);
+        }
+        None
+    }
+
+    /// Where the fields stand; behind a bare variant, its last letter.
+    fn place(&self) -> Node<'a> {
+        let at = self.node.at - usize::from(self.node.text.is_empty() && self.node.at > 0);
+        Node { at, ..self.node }
     }
 }
 
@@ -271,11 +280,23 @@ pub(super) fn suggest<'n>(
 ) -> Option<&'n str> {
     /// One slip per so many letters is still taken for the same word.
     const LETTERS_PER_SLIP: usize = 3;
+    /// So many letters that begin a name are taken for it.
+    const LETTERS_OF_STEM: usize = 3;
     let lower = found.to_lowercase();
-    let slips = (lower.chars().count() / LETTERS_PER_SLIP).max(1);
+    let letters = lower.chars().count();
+    let slips = (letters / LETTERS_PER_SLIP).max(1);
+    let distance = |name: &str| {
+        let name = name.to_lowercase();
+        let begins = letters >= LETTERS_OF_STEM && name.starts_with(&lower);
+        if begins {
+            slips
+        } else {
+            strsim::osa_distance(&lower, &name)
+        }
+    };
     known
         .into_iter()
-        .map(|name| (strsim::osa_distance(&lower, &name.to_lowercase()), name))
+        .map(|name| (distance(name), name))
         .filter(|&(distance, _)| distance <= slips)
         .min_by_key(|&(distance, _)| distance)
         .map(|(_, name)| name)

@@ -6,11 +6,15 @@ use std::path::Path;
 
 /// The error at byte `at` of the source.
 pub(super) fn diagnostic(error: &Error, at: usize, source: &str, file: &Path) -> Diagnostic {
-    // At the end of the file the last thing written is the best place to point at.
-    let at = if at >= source.trim_end().len() {
-        source.trim_end().len().saturating_sub(1)
-    } else {
-        at
+    let written = source.trim_end().len();
+    if written == 0 {
+        return Diagnostic::error(codes::SYNTAX, "the file is empty").in_file(file);
+    }
+    let at = match error {
+        // The cursor is behind the quote.
+        Error::ExpectedStringEnd if at > 0 => at - 1,
+        // At the end of the file the last thing written is the best place to point at.
+        _ => at.min(written - 1),
     };
     let found = Diagnostic::error(codes::SYNTAX, message(error))
         .in_file(file)
@@ -56,6 +60,7 @@ fn hint(error: &Error) -> Option<&'static str> {
         Error::ExpectedStructLikeEnd | Error::ExpectedComma => {
             Some("is a comma missing before this?")
         }
+        Error::ExpectedIdentifier => Some("is a bracket not closed before this?"),
         Error::ExpectedArrayEnd | Error::ExpectedMapEnd => Some("is a comma missing before this?"),
         _ => None,
     }

@@ -362,3 +362,26 @@ fn no_mutation_panics() {
         "{good} good, {bad} bad: mutations of one kind only show nothing"
     );
 }
+
+#[test]
+fn bytes_that_are_not_text_are_refused_with_their_place() {
+    let path = std::env::temp_dir().join(format!("luxel-not-text-{}.ron", std::process::id()));
+    std::fs::write(&path, b"Scene(\n  version: \xff1)").expect("the temporary folder is writable");
+    let found = load(&path);
+    std::fs::remove_file(&path).expect("the file was there");
+    let Err(LoadError::Invalid(found)) = found else {
+        panic!("{found:?}");
+    };
+    let place = found[0].span.as_ref().map(|s| (s.line, s.column));
+    assert_eq!((found[0].code, place), (codes::NOT_TEXT, Some((2, 12))));
+}
+
+#[test]
+fn the_order_of_the_text_is_the_order_of_the_errors() {
+    let Err(found) = read("(version: 1, entities: [(parent: \"x\"), (shape: Sphere(radius: 0))])")
+    else {
+        panic!("three errors pass");
+    };
+    let codes: Vec<&str> = found.iter().map(|d| d.code).collect();
+    assert_eq!(codes, ["E012", "E011", "E014"]);
+}

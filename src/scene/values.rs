@@ -6,6 +6,12 @@ use super::schema::{ColorDesc, Placed, TextureFilterDesc, WrapDesc};
 use super::srgb;
 use crate::diag::codes;
 
+/// Largest magnitude of a number: its square is still finite.
+const MAX_MAGNITUDE: f64 = 1e150;
+
+/// Largest radiance: sums and products of a path still fit single precision.
+pub(super) const MAX_RADIANCE: f64 = 1e18;
+
 /// Which finite numbers are allowed.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Domain {
@@ -32,13 +38,16 @@ impl Domain {
         }
     }
 
-    fn words(self) -> String {
+    /// What a number should be instead of `x`.
+    fn words(self, x: f64) -> String {
         match self {
             Domain::Any => "a number".to_owned(),
             Domain::Positive => "above 0".to_owned(),
             Domain::NonNegative => "0 or above".to_owned(),
             Domain::Unit => "from 0 to 1".to_owned(),
             Domain::Between(low, high) => format!("above {low} and below {high}"),
+            Domain::UpTo(MAX_RADIANCE) if x < 0.0 => Domain::NonNegative.words(x),
+            Domain::UpTo(MAX_RADIANCE) => format!("from 0 to {MAX_RADIANCE:e}"),
             Domain::UpTo(high) => format!("from 0 to {high}"),
         }
     }
@@ -67,8 +76,16 @@ impl<'a> Reader<'a> {
             self.error(codes::NOT_FINITE, node, message);
             return None;
         }
+        if x.abs() > MAX_MAGNITUDE {
+            let message = format!(
+                "{name} must be within ±{MAX_MAGNITUDE:e}, not {}",
+                node.text
+            );
+            self.error(codes::OUT_OF_RANGE, node, message);
+            return None;
+        }
         if !domain.contains(x) {
-            let message = format!("{name} must be {}, not {}", domain.words(), node.text);
+            let message = format!("{name} must be {}, not {}", domain.words(x), node.text);
             match domain {
                 Domain::Unit if x > 1.0 => {
                     self.error_hint(
@@ -92,8 +109,12 @@ impl<'a> Reader<'a> {
             (_, Ok(x)) if !x.is_finite() || x.fract() != 0.0 || node.text.contains('.') => {
                 self.wrong_type(node, name, "a whole number")
             }
-            (_, Ok(_)) => {
-                let message = format!("{name} must be from {low} to {high}, not {}", node.text);
+            (_, Ok(x)) => {
+                let range = match high {
+                    u32::MAX if x < f64::from(low) => format!("{low} or above"),
+                    _ => format!("from {low} to {high}"),
+                };
+                let message = format!("{name} must be {range}, not {}", node.text);
                 self.error(codes::OUT_OF_RANGE, node, message);
                 None
             }
@@ -159,13 +180,17 @@ impl<'a> Reader<'a> {
             self.error_hint(
                 codes::BAD_PATH,
                 node,
-                format!("{name} must be a file, not an address"),
+                format!("the path of {name} must be a file, not an address"),
                 hint,
             );
             return None;
         }
         if value.trim().is_empty() {
-            self.error(codes::BAD_PATH, node, format!("{name} is empty"));
+            self.error(
+                codes::BAD_PATH,
+                node,
+                format!("the path of {name} is empty"),
+            );
             return None;
         }
         Some(Placed {
@@ -190,12 +215,22 @@ impl<'a> Reader<'a> {
             ColorRole::Reflectance => &["Linear", "Srgb", "Texture", "Image"],
             ColorRole::Background => &["Linear", "Srgb", "Hdr"],
         };
+        if node.tuple().is_ok_and(|items| items.len() == 3) {
+            let hint = format!("a colour says its space: Linear{}", node.text);
+            self.error_hint(
+                codes::WRONG_TYPE,
+                node,
+                format!("{name} is a colour without a space"),
+                hint,
+            );
+            return None;
+        }
         let (variant, body) = self.variant(node, name, known)?;
         match variant {
             "Linear" => {
                 let domain = match role {
                     ColorRole::Reflectance => Domain::Unit,
-                    ColorRole::Background => Domain::NonNegative,
+                    ColorRole::Background => Domain::UpTo(MAX_RADIANCE),
                 };
                 self.vector(body, name, domain).map(ColorDesc::Linear)
             }
@@ -235,7 +270,7 @@ impl<'a> Reader<'a> {
 
     fn image(&self, body: Node<'a>) -> Option<ColorDesc> {
         let fields = Fields::read(self, body, "`Image`", &["path", "wrap", "filter"])?;
-        let path = fields.require("path", |r, n| r.path(n, "`path`"));
+        let path = fields.require("path", |r, n| r.path(n, "the image"));
         let wrap = fields.read_or("wrap", WrapDesc::default(), |r, n| {
             let (variant, body) = r.variant(n, "`wrap`", &["Repeat", "Mirror", "Clamp"])?;
             r.no_fields(body, variant)?;
