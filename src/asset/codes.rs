@@ -6,9 +6,9 @@ pub const UNREADABLE: &str = "E101";
 pub const NO_FACES: &str = "E102";
 /// A face that cannot be parsed, or that names a vertex, uv or normal that does not exist.
 pub const BAD_FACE: &str = "E103";
-/// A `v`, `vt` or `vn` line with too few or unreadable numbers.
+/// A `v`, `vt` or `vn` line with too few numbers.
 pub const BAD_NUMBER: &str = "E104";
-/// A vertex that a face uses and that is not finite or too large.
+/// A vertex that a face uses and that is not a number, not finite, or too large.
 pub const BAD_VERTEX: &str = "E105";
 /// A value of an MTL file that cannot be read or is impossible.
 pub const BAD_MATERIAL: &str = "E106";
@@ -49,3 +49,5 @@ pub const FOUND_BESIDE: &str = "W112";
 pub const BLACK_FACTOR: &str = "W113";
 /// A self-intersecting polygon, triangulated as well as it goes.
 pub const TANGLED_FACE: &str = "W114";
+/// Faces that name uvs or normals where the file has none at all: they count as absent.
+pub const ABSENT: &str = "W115";

@@ -12,10 +12,14 @@
 
 pub mod codes;
 mod loader;
+mod materials;
 mod mtl;
 pub mod normals;
 mod obj;
+mod paths;
 mod scan;
+#[cfg(test)]
+mod tests;
 mod text;
 mod texture;
 mod triangulate;
@@ -44,7 +48,8 @@ pub struct Mesh {
     pub path: PathBuf,
     /// Vertex positions as authored.
     pub positions: Vec<DVec3>,
-    /// Position index of each corner; length `3 * triangles`. Triangles are in file order after triangulation.
+    /// Position index of each corner; length `3 * triangles`. Triangles are in file order after triangulation, without
+    /// those that have no area: these are dropped and do not count.
     pub corners: Vec<u32>,
     /// Texture coordinates of each corner, v up; `None` for a triangle whose face has none. Empty when the file has
     /// none at all, else length `3 * triangles`.

@@ -153,3 +153,88 @@ fn places(mesh: &Mesh) -> Vec<u32> {
     }
     places
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mesh(positions: &[[f64; 3]], corners: &[u32]) -> Mesh {
+        Mesh {
+            positions: positions.iter().map(|&p| DVec3::from_array(p)).collect(),
+            corners: corners.to_vec(),
+            ..Mesh::default()
+        }
+    }
+
+    /// A cube of 12 triangles; corner index = x + 2y + 4z.
+    fn cube() -> Mesh {
+        let at = |i: usize| [i & 1, (i >> 1) & 1, i >> 2].map(|c| c as f64);
+        let positions: Vec<_> = (0..8).map(at).collect();
+        let quads = [
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+        ];
+        let corners: Vec<u32> = quads
+            .iter()
+            .flat_map(|&[a, b, c, d]| [a, b, c, a, c, d])
+            .collect();
+        mesh(&positions, &corners)
+    }
+
+    #[test]
+    fn a_cube_is_sharp_below_its_angle_and_diagonal_above() {
+        let cube = cube();
+        let sharp = smooth(&cube, 60.0);
+        let round = smooth(&cube, 100.0);
+        for (t, corners) in cube.corners.as_chunks::<3>().0.iter().enumerate() {
+            let [a, b, c] = corners.map(|i| cube.positions[i as usize]);
+            let face = (b - a).cross(c - a);
+            for k in 0..3 {
+                assert_eq!(sharp[3 * t + k], face);
+                // However the sides are cut, each weighs its right angle.
+                let outward = (cube.positions[corners[k] as usize] - 0.5).normalize();
+                assert!(round[3 * t + k].distance(outward) < 1e-15);
+            }
+        }
+    }
+
+    #[test]
+    fn positions_that_are_equal_share_their_normals_whatever_their_index() {
+        let joined = cube();
+        let split = mesh(&[], &(0..36).collect::<Vec<_>>());
+        let positions = joined
+            .corners
+            .iter()
+            .map(|&i| joined.positions[i as usize] * -1.0 + 0.0);
+        let negative = |p: DVec3| DVec3::new(if p.x == 0.0 { -0.0 } else { p.x }, p.y, p.z);
+        let split = Mesh {
+            positions: positions
+                .enumerate()
+                .map(|(i, p)| if i % 2 == 0 { negative(p) } else { p })
+                .collect(),
+            ..split
+        };
+        let mirrored = Mesh {
+            positions: joined.positions.iter().map(|&p| p * -1.0 + 0.0).collect(),
+            ..joined
+        };
+        assert_eq!(smooth(&split, 100.0), smooth(&mirrored, 100.0));
+    }
+
+    #[test]
+    fn faces_without_area_and_opposite_faces_have_unit_normals() {
+        let flat = mesh(
+            &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+            &[0, 1, 2, 0, 2, 1, 0, 0, 1],
+        );
+        for angle in [0.0, 60.0, 180.0] {
+            let normals = smooth(&flat, angle);
+            assert!(normals.iter().all(|n| n.length() == 1.0), "{normals:?}");
+            assert_eq!((normals[1], normals[4]), (DVec3::Z, -DVec3::Z));
+        }
+    }
+}

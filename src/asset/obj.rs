@@ -3,8 +3,8 @@
 //! Enters: the text of a file and its materials by `usemtl` line. Leaves: a mesh whose every corner has the uv and the
 //! normal that its own token names. Deliberately absent: curves, points, lines, vertex colours, smoothing groups.
 
-use super::scan::{self, Face, Scan, WITH_NORMAL, WITH_UV, at_line};
-use super::text::Lines;
+use super::scan::{Face, Scan, WITH_NORMAL, WITH_UV, at_line};
+use super::text::{Line, Lines};
 use super::triangulate::{self, Trouble};
 use super::{Mesh, codes};
 use crate::diag::Diagnostic;
@@ -48,8 +48,7 @@ pub(super) fn triangles(
     materials: &[Option<u32>],
     warnings: &mut Vec<Diagnostic>,
 ) -> Result<Mesh, Diagnostic> {
-    let groups = parse(source, scan)?;
-    let mut builder = Builder::new(source, groups);
+    let mut builder = Builder::new(source, scan, parse(scan)?);
     for face in &scan.faces {
         let material = face.used.and_then(|used| materials[used as usize]);
         builder.face(face, material)?;
@@ -65,28 +64,20 @@ pub(super) fn triangles(
     Ok(mesh)
 }
 
-/// The groups of faces, as the parser read them.
-fn parse(source: &str, scan: &Scan) -> Result<[tobj::Mesh; 4], Diagnostic> {
-    let mut text = String::with_capacity(scan.groups.iter().fold(64, |sum, g| sum + g.len()));
-    for (set, group) in scan
-        .groups
-        .iter()
-        .enumerate()
-        .filter(|(_, g)| !g.is_empty())
-    {
-        text.push_str(["g 0\n", "g 1\n", "g 2\n", "g 3\n"][set]);
-        text.push_str(group);
-    }
-    let options = tobj::LoadOptions {
-        single_index: false,
-        triangulate: false,
-        ignore_points: true,
-        ignore_lines: true,
+/// The groups of faces, as the parser reads them.
+fn parse(scan: &Scan) -> Result<[tobj::Mesh; 4], Diagnostic> {
+    let models = match read(&scan.vertices, &scan.groups) {
+        Err(
+            LoadError::PositionParseError
+            | LoadError::ScalingByZeroError
+            | LoadError::TexcoordParseError
+            | LoadError::NormalParseError,
+        ) => read(&readable(&scan.vertices), &scan.groups),
+        read => read,
     };
-    let mut reader = std::io::Read::chain(scan.vertices.as_bytes(), text.as_bytes());
-    let no_materials = |_: &std::path::Path| Ok(Default::default());
-    let (models, _) = tobj::load_obj_buf(&mut reader, &options, no_materials)
-        .map_err(|error| locate(source, error))?;
+    let models = models.map_err(|error| {
+        Diagnostic::error(codes::PARSER, format!("the OBJ parser says: {error}"))
+    })?;
     let mut groups: [tobj::Mesh; 4] = Default::default();
     for model in models {
         match model.name.parse::<usize>() {
@@ -97,31 +88,41 @@ fn parse(source: &str, scan: &Scan) -> Result<[tobj::Mesh; 4], Diagnostic> {
     Ok(groups)
 }
 
-/// The first line that the parser cannot have read.
-fn locate(source: &str, error: LoadError) -> Diagnostic {
-    let (keyword, least) = match error {
-        LoadError::PositionParseError | LoadError::ScalingByZeroError => ("v", 3),
-        LoadError::TexcoordParseError => ("vt", 2),
-        LoadError::NormalParseError => ("vn", 3),
-        other => return Diagnostic::error(codes::PARSER, format!("the OBJ parser says: {other}")),
-    };
-    for line in Lines::of(source).filter(|line| line.keyword == keyword) {
-        let words: Vec<&str> = line.values().split_ascii_whitespace().collect();
-        let weighted = keyword == "v" && words.len() == 4;
-        for (i, word) in words
-            .iter()
-            .enumerate()
-            .take(if weighted { 4 } else { least })
-        {
-            let says = match word.parse::<f64>() {
-                Err(_) => format!("`{word}` is not a number"),
-                Ok(0.0) if i == 3 => "the weight of a vertex cannot be 0".to_owned(),
-                Ok(_) => continue,
-            };
-            return at_line(Diagnostic::error(codes::BAD_NUMBER, says), source, line.at);
-        }
+/// Has the parser read clean text; each group of faces becomes a model, named by its number.
+fn read(vertices: &str, groups: &[String; 4]) -> Result<Vec<tobj::Model>, LoadError> {
+    let mut faces = String::with_capacity(groups.iter().fold(64, |sum, group| sum + group.len()));
+    for (set, group) in groups
+        .iter()
+        .enumerate()
+        .filter(|(_, group)| !group.is_empty())
+    {
+        faces.push_str(["g 0\n", "g 1\n", "g 2\n", "g 3\n"][set]);
+        faces.push_str(group);
     }
-    Diagnostic::error(codes::PARSER, format!("the OBJ parser says: {error}"))
+    let options = tobj::LoadOptions {
+        single_index: false,
+        triangulate: false,
+        ignore_points: true,
+        ignore_lines: true,
+    };
+    let mut text = std::io::Read::chain(vertices.as_bytes(), faces.as_bytes());
+    let no_materials = |_: &std::path::Path| Ok(Default::default());
+    tobj::load_obj_buf(&mut text, &options, no_materials).map(|(models, _)| models)
+}
+
+/// Vertex lines with NaN for every number that cannot be read: it matters only if a face uses it.
+fn readable(vertices: &str) -> String {
+    let mut text = String::with_capacity(vertices.len());
+    for line in vertices.lines() {
+        for (i, word) in line.split(' ').enumerate() {
+            let bad_weight = i == 4 && word.parse() == Ok(0.0);
+            let bad = i > 0 && (bad_weight || word.parse::<f64>().is_err());
+            text.push_str(if i == 0 { "" } else { " " });
+            text.push_str(if bad { "nan" } else { word });
+        }
+        text.push('\n');
+    }
+    text
 }
 
 fn unexpected() -> Diagnostic {
@@ -151,7 +152,7 @@ struct Builder<'a> {
 }
 
 impl<'a> Builder<'a> {
-    fn new(source: &'a str, groups: [tobj::Mesh; 4]) -> Builder<'a> {
+    fn new(source: &'a str, scan: &Scan, groups: [tobj::Mesh; 4]) -> Builder<'a> {
         let mut mesh = Mesh::default();
         let base = [0, 1, 2, 3].map(|set: usize| {
             let base = mesh.positions.len() as u32;
@@ -162,12 +163,8 @@ impl<'a> Builder<'a> {
         });
         Builder {
             source,
-            any_uv: [1, 3]
-                .iter()
-                .any(|&set: &usize| !groups[set].indices.is_empty()),
-            any_normal: [2, 3]
-                .iter()
-                .any(|&set: &usize| !groups[set].indices.is_empty()),
+            any_uv: scan.has_uvs && scan.groups_with(WITH_UV),
+            any_normal: scan.has_normals && scan.groups_with(WITH_NORMAL),
             groups,
             done: [0; 4],
             base,
@@ -300,6 +297,11 @@ impl<'a> Builder<'a> {
                 "faces give a uv or normal to some corners only, which is ignored",
             ),
             (
+                codes::ABSENT,
+                Tally::of(&scan.absent),
+                "faces name uvs or normals, and the file has none",
+            ),
+            (
                 codes::ZERO_AREA,
                 self.zero_area,
                 "triangles without area are dropped",
@@ -308,12 +310,12 @@ impl<'a> Builder<'a> {
             (
                 codes::BAD_UV,
                 self.bad_uv,
-                "corners have a uv that is not finite, which is ignored",
+                "corners have a uv that is not a finite number, which is ignored",
             ),
             (
                 codes::BAD_NORMAL,
                 self.bad_normal,
-                "corners have a normal that is zero or not finite, which is ignored",
+                "corners have a normal that is zero or not a finite number, which is ignored",
             ),
         ];
         told.into_iter()
@@ -335,23 +337,26 @@ fn has_area([a, b, c]: [DVec3; 3]) -> bool {
 
 /// The error for corner `corner` of a face, whose position cannot be used.
 fn bad_vertex(source: &str, face: &Face, corner: usize, position: DVec3) -> Diagnostic {
-    let says = if position.is_finite() {
-        "is beyond 1e100"
-    } else {
-        "is not finite"
+    let line = vertex_line(source, face, corner);
+    let unreadable = line.as_ref().and_then(|line| {
+        let mut words = line.values().split_ascii_whitespace();
+        words
+            .find(|word| word.parse::<f64>().is_err())
+            .map(str::to_owned)
+    });
+    let says = match unreadable {
+        Some(word) => format!("`{word}` is not a number"),
+        None if position.is_finite() => "the vertex is beyond 1e100".to_owned(),
+        None => "the vertex is not finite".to_owned(),
     };
-    let at = vertex_line(source, face, corner);
     let line_of_face = source[..face.at].matches('\n').count() + 1;
-    let says = format!("the vertex {says}, and the face in line {line_of_face} uses it");
-    at_line(
-        Diagnostic::error(codes::BAD_VERTEX, says),
-        source,
-        at.unwrap_or(face.at),
-    )
+    let says = format!("{says}, and the face in line {line_of_face} uses it");
+    let at = line.map_or(face.at, |line| line.at);
+    at_line(Diagnostic::error(codes::BAD_VERTEX, says), source, at)
 }
 
-/// Offset of the `v` line that a corner of a face names.
-fn vertex_line(source: &str, face: &Face, corner: usize) -> Option<usize> {
+/// The `v` line that a corner of a face names.
+fn vertex_line<'a>(source: &'a str, face: &Face, corner: usize) -> Option<Line<'a>> {
     let line = Lines::of(source).find(|line| line.at == face.at)?;
     let token = line.values().split_ascii_whitespace().nth(corner)?;
     let index: i64 = token.split('/').next()?.parse().ok()?;
@@ -363,7 +368,7 @@ fn vertex_line(source: &str, face: &Face, corner: usize) -> Option<usize> {
             before.checked_add_signed(isize::try_from(index).ok()?)?
         }
     };
-    vertices().nth(index).map(|line| line.at)
+    vertices().nth(index)
 }
 
 /// Scans a file; errors of all its lines at once, or that it has no faces.
@@ -378,6 +383,5 @@ pub(super) fn scan(source: &str) -> Result<Scan, Vec<Diagnostic>> {
             "the file has no faces",
         )]);
     }
-    debug_assert!(scan.errors.len() <= scan::MAX_ERRORS);
     Ok(scan)
 }

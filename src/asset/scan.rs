@@ -57,6 +57,12 @@ pub(super) struct Scan {
     pub(super) short: Vec<usize>,
     /// Offsets of faces that give an attribute to some corners only.
     pub(super) mixed: Vec<usize>,
+    /// Offsets of faces that name uvs or normals though the file has none of that kind.
+    pub(super) absent: Vec<usize>,
+    /// Whether the file has `vt` lines.
+    pub(super) has_uvs: bool,
+    /// Whether the file has `vn` lines.
+    pub(super) has_normals: bool,
     /// Errors, at most [`MAX_ERRORS`].
     pub(super) errors: Vec<Diagnostic>,
 }
@@ -96,6 +102,12 @@ impl Scan {
             scanner.line(&line);
         }
         scanner.finish()
+    }
+
+    /// Whether any face has an attribute.
+    pub(super) fn groups_with(&self, attribute: AttributeSet) -> bool {
+        let has = |set: usize| set & usize::from(attribute) != 0;
+        (0..self.groups.len()).any(|set| has(set) && !self.groups[set].is_empty())
     }
 }
 
@@ -236,15 +248,26 @@ impl Scanner<'_> {
         }
     }
 
+    /// Judges the references that had nothing to refer to when they stood there: one error or warning for each face.
     fn finish(mut self) -> Scan {
+        let (mut wrong, mut absent) = (None, None);
         for Forward { at, kind, index } in std::mem::take(&mut self.forward) {
             let count = self.counts[kind];
-            if index > count {
+            if index <= count {
+                continue;
+            }
+            if kind > 0 && count == 0 {
+                if absent.replace(at) != Some(at) {
+                    self.scan.absent.push(at);
+                }
+            } else if wrong.replace(at) != Some(at) {
                 let name = KINDS[kind];
                 let says = format!("the face uses `{name}` {index}, but the file has {count}");
                 self.error(codes::BAD_FACE, at, says);
             }
         }
+        self.scan.has_uvs = self.counts[1] > 0;
+        self.scan.has_normals = self.counts[2] > 0;
         self.scan
     }
 }

@@ -138,3 +138,123 @@ fn is_ear(flat: &[DVec2], ring: &Ring, at: usize) -> bool {
     }
     true
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn polygon(points: &[(f64, f64)]) -> Vec<DVec3> {
+        // A tilted plane, so that no coordinate is spare.
+        points
+            .iter()
+            .map(|&(x, y)| DVec3::new(x, y, 0.5 * x - 2.0 * y))
+            .collect()
+    }
+
+    /// Triangles, and the sum of their areas as seen along z, each counted as positive.
+    fn covered(points: &[DVec3]) -> (Vec<[usize; 3]>, f64) {
+        let mut triangles = Vec::new();
+        assert_eq!(triangulate(points, &mut triangles), Ok(()));
+        let flat = |i: usize| points[i].truncate();
+        let area = triangles
+            .iter()
+            .map(|t| turn(flat(t[0]), flat(t[1]), flat(t[2])).abs() / 2.0)
+            .sum();
+        (triangles, area)
+    }
+
+    #[test]
+    fn convex_polygons_are_fans() {
+        let square = polygon(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]);
+        assert_eq!(covered(&square).0, [[0, 1, 2], [0, 2, 3]]);
+    }
+
+    #[test]
+    fn concave_polygons_are_covered_once_from_any_start_in_either_winding() {
+        let shapes: [(&[(f64, f64)], f64); 4] = [
+            (&[(0.0, 0.0), (4.0, 0.0), (1.0, 1.0), (0.0, 4.0)], 4.0),
+            (
+                &[
+                    (0.0, 0.0),
+                    (3.0, 0.0),
+                    (3.0, 3.0),
+                    (2.0, 3.0),
+                    (2.0, 1.0),
+                    (1.0, 1.0),
+                    (1.0, 3.0),
+                    (0.0, 3.0),
+                ],
+                7.0,
+            ),
+            (
+                &[
+                    (0.0, 0.0),
+                    (2.0, 0.0),
+                    (4.0, 0.0),
+                    (4.0, 2.0),
+                    (2.0, 1.0),
+                    (0.0, 2.0),
+                ],
+                6.0,
+            ),
+            // A square with a square hole, joined by a bridge that is walked twice.
+            (
+                &[
+                    (0.0, 0.0),
+                    (3.0, 0.0),
+                    (3.0, 3.0),
+                    (0.0, 3.0),
+                    (0.0, 0.0),
+                    (1.0, 1.0),
+                    (1.0, 2.0),
+                    (2.0, 2.0),
+                    (2.0, 1.0),
+                    (1.0, 1.0),
+                ],
+                8.0,
+            ),
+        ];
+        for (shape, area) in shapes {
+            for start in 0..shape.len() {
+                let mut turned = shape.to_vec();
+                turned.rotate_left(start);
+                for _ in 0..2 {
+                    let points = polygon(&turned);
+                    let (triangles, found) = covered(&points);
+                    assert_eq!(
+                        (triangles.len(), found),
+                        (shape.len() - 2, area),
+                        "{turned:?}"
+                    );
+                    turned.reverse();
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn degenerate_and_tangled_polygons_end() {
+        let mut triangles = Vec::new();
+        let star: Vec<_> = [
+            (1.0, 0.0),
+            (-0.8, 0.6),
+            (0.3, -0.95),
+            (0.3, 0.95),
+            (-0.8, -0.6),
+        ]
+        .into();
+        assert_eq!(
+            triangulate(&polygon(&star), &mut triangles),
+            Err(Trouble::Tangled)
+        );
+        assert_eq!(triangles.len(), 3);
+        for shape in [
+            vec![(1.0, 1.0); 7],
+            vec![(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0)],
+        ] {
+            triangles.clear();
+            assert_eq!(triangulate(&polygon(&shape), &mut triangles), Ok(()));
+            assert_eq!(triangles.len(), shape.len() - 2);
+        }
+    }
+}

@@ -1,0 +1,298 @@
+//! The materials of a mesh: from the `mtllib` and `usemtl` lines of an OBJ file to [`MeshMaterial`]s.
+
+use super::loader::Loader;
+use super::paths::{beside, library_names, most_similar, similar_file};
+use super::scan::{Named, Scan, at_line};
+use super::{MeshMaterial, TextureId, codes, mtl, text};
+use crate::diag::Diagnostic;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+/// Colour of a material that gives none, as of the scene's default material.
+const NEUTRAL: [f64; 3] = [0.8; 3];
+
+/// A material library as read: its file, its text, its materials.
+struct Library {
+    path: PathBuf,
+    source: String,
+    definitions: Vec<mtl::Definition>,
+}
+
+/// A text file that is being loaded.
+pub(super) struct Source<'a> {
+    pub(super) path: &'a Path,
+    pub(super) text: &'a str,
+}
+
+impl Source<'_> {
+    fn place(&self, diagnostic: Diagnostic, at: usize) -> Diagnostic {
+        at_line(diagnostic, self.text, at).in_file(self.path)
+    }
+}
+
+/// The material libraries of a mesh.
+#[derive(Default)]
+pub(super) struct Libraries {
+    read: Vec<Library>,
+    /// Whether one was missing, so that unknown names are no news.
+    missing: bool,
+}
+
+impl Libraries {
+    /// The first definition of a name; a name with a comment behind it is tried without.
+    fn find(&self, name: &str) -> Option<(&Library, &mtl::Definition)> {
+        [name, text::without_comment(name)]
+            .into_iter()
+            .find_map(|name| {
+                self.read.iter().find_map(|library| {
+                    let definition = library.definitions.iter().find(|d| d.name == name)?;
+                    Some((library, definition))
+                })
+            })
+    }
+}
+
+impl Loader {
+    /// Reads the material libraries that the `mtllib` lines name; a missing one is a warning.
+    pub(super) fn libraries(
+        &mut self,
+        source: &Source<'_>,
+        lines: &[Named],
+    ) -> Result<Libraries, Vec<Diagnostic>> {
+        let mut libraries = Libraries::default();
+        let mut errors = Vec::new();
+        for line in lines {
+            for name in library_names(source.path, &line.name) {
+                let Some(path) = self.locate(source, line.at, &name) else {
+                    libraries.missing = true;
+                    let says = format!(
+                        "the material file \"{name}\" is missing: its materials are the default one"
+                    );
+                    let warning = Diagnostic::warning(codes::MTL_MISSING, says);
+                    self.warnings.push(source.place(warning, line.at));
+                    continue;
+                };
+                if libraries.read.iter().any(|known| known.path == path) {
+                    continue;
+                }
+                let bytes = self.read(&path).map_err(|e| vec![e])?;
+                let text = text::decode(&bytes).into_owned();
+                match mtl::read(&text) {
+                    Ok(definitions) => libraries.read.push(Library {
+                        path,
+                        source: text,
+                        definitions,
+                    }),
+                    Err(found) => errors.extend(found.into_iter().map(|e| e.in_file(&path))),
+                }
+            }
+        }
+        if errors.is_empty() {
+            Ok(libraries)
+        } else {
+            Err(errors)
+        }
+    }
+
+    /// The materials that faces use, in order of first use, and which of them each `usemtl` line means.
+    pub(super) fn materials(
+        &mut self,
+        source: &Source<'_>,
+        scan: &Scan,
+        libraries: &Libraries,
+    ) -> Result<(Vec<MeshMaterial>, Vec<Option<u32>>), Vec<Diagnostic>> {
+        let mut used = vec![false; scan.uses.len()];
+        for face in &scan.faces {
+            if let Some(line) = face.used {
+                used[line as usize] = true;
+            }
+        }
+        self.warn_of_duplicates(libraries);
+        if let Some(first) = used.iter().position(|&used| used)
+            && libraries.read.is_empty()
+            && !libraries.missing
+        {
+            let says = "the file uses materials and names no material file: the default stands in";
+            let warning = Diagnostic::warning(codes::UNKNOWN_MATERIAL, says);
+            self.warnings
+                .push(source.place(warning, scan.uses[first].at));
+        }
+        let mut seen = BTreeSet::new();
+        let mut materials = Vec::new();
+        let mut errors = Vec::new();
+        let mut known: BTreeMap<&str, Option<u32>> = BTreeMap::new();
+        let mut by_use = vec![None; scan.uses.len()];
+        for (i, line) in scan.uses.iter().enumerate().filter(|(i, _)| used[*i]) {
+            by_use[i] = *known.entry(&line.name).or_insert_with(|| {
+                let Some((library, definition)) = libraries.find(&line.name) else {
+                    self.warn_unknown(source, line, libraries);
+                    return None;
+                };
+                seen.insert((&library.path, definition.at));
+                match self.material(library, definition) {
+                    Ok(material) => {
+                        materials.push(material);
+                        Some(materials.len() as u32 - 1)
+                    }
+                    Err(e) => {
+                        errors.push(e);
+                        None
+                    }
+                }
+            });
+        }
+        for library in &libraries.read {
+            let used = |d: &&mtl::Definition| seen.contains(&(&library.path, d.at));
+            self.warn_not_modelled(library, library.definitions.iter().filter(used));
+        }
+        if errors.is_empty() {
+            Ok((materials, by_use))
+        } else {
+            Err(errors)
+        }
+    }
+
+    fn material(
+        &mut self,
+        library: &Library,
+        definition: &mtl::Definition,
+    ) -> Result<MeshMaterial, Diagnostic> {
+        let source = Source {
+            path: &library.path,
+            text: &library.source,
+        };
+        let name = &definition.name;
+        let mut texture = None;
+        if let Some((path, at)) = &definition.texture {
+            texture = self.material_texture(&source, path, *at)?;
+        }
+        let lost = definition.texture.is_some() && texture.is_none();
+        let color = match definition.color {
+            Some(color) if lost && color == [0.0; 3] => NEUTRAL,
+            Some(color) => color,
+            None if texture.is_some() => [1.0; 3],
+            None => NEUTRAL,
+        };
+        let mut warn = |code, at, says: String| {
+            self.warnings
+                .push(source.place(Diagnostic::warning(code, says), at));
+        };
+        if texture.is_some() && color == [0.0; 3] {
+            warn(
+                codes::BLACK_FACTOR,
+                definition.at,
+                format!("the colour (Kd) of \"{name}\" is black, which hides its texture"),
+            );
+        }
+        if color.iter().any(|&c| c > 1.0) {
+            warn(
+                codes::BRIGHT_COLOR,
+                definition.at,
+                format!("the colour (Kd) of \"{name}\" is above 1, and taken as 1"),
+            );
+        }
+        Ok(MeshMaterial {
+            name: name.clone(),
+            color: color.map(|c| c.min(1.0)),
+            texture,
+            emission: definition.emission,
+        })
+    }
+
+    /// The texture of a material; a missing file is a warning, a damaged one an error.
+    fn material_texture(
+        &mut self,
+        source: &Source<'_>,
+        name: &str,
+        at: usize,
+    ) -> Result<Option<TextureId>, Diagnostic> {
+        if let Some(path) = self.locate(source, at, name) {
+            return self.texture(&path).map(Some);
+        }
+        let says =
+            format!("the texture \"{name}\" is missing: the material keeps its plain colour");
+        let mut warning = Diagnostic::warning(codes::TEXTURE_MISSING, says);
+        if let Some(similar) = similar_file(&beside(source.path, name)) {
+            warning = warning.hint(format!("did you mean \"{similar}\"?"));
+        }
+        self.warnings.push(source.place(warning, at));
+        Ok(None)
+    }
+
+    /// The file that a line of another file names: where its path says, or else, with a warning, beside that file.
+    fn locate(&mut self, source: &Source<'_>, at: usize, name: &str) -> Option<PathBuf> {
+        let named = [name, text::without_comment(name)].map(|name| beside(source.path, name));
+        if let Some(found) = named.iter().find(|path| path.is_file()) {
+            return Some(found.clone());
+        }
+        let file_name = named[0].file_name()?;
+        let found = source.path.with_file_name(file_name);
+        if !found.is_file() {
+            return None;
+        }
+        let says = format!("\"{name}\" does not exist: taken from beside this file instead");
+        let warning = Diagnostic::warning(codes::FOUND_BESIDE, says);
+        self.warnings.push(source.place(warning, at));
+        Some(found)
+    }
+
+    /// One warning for all that the used materials of a library ask for and do not get.
+    fn warn_not_modelled<'a>(
+        &mut self,
+        library: &Library,
+        used: impl Iterator<Item = &'a mtl::Definition>,
+    ) {
+        let asked: Vec<_> = used
+            .flat_map(|definition| &definition.not_modelled)
+            .collect();
+        let Some((_, at)) = asked.first() else {
+            return;
+        };
+        let keywords: BTreeSet<&str> = asked.iter().map(|(keyword, _)| keyword.as_str()).collect();
+        let keywords: Vec<&str> = keywords.into_iter().collect();
+        let says = format!(
+            "not modelled, and ignored: {}; the first is here",
+            keywords.join(", ")
+        );
+        let warning = Diagnostic::warning(codes::NOT_MODELLED, says).in_file(&library.path);
+        self.warnings.push(at_line(warning, &library.source, *at));
+    }
+
+    fn warn_unknown(&mut self, source: &Source<'_>, line: &Named, libraries: &Libraries) {
+        if libraries.missing || libraries.read.is_empty() {
+            return;
+        }
+        let says = format!(
+            "no material file defines \"{}\": the default material stands in",
+            line.name
+        );
+        let mut warning = Diagnostic::warning(codes::UNKNOWN_MATERIAL, says);
+        let names = libraries
+            .read
+            .iter()
+            .flat_map(|library| &library.definitions)
+            .map(|d| d.name.as_str());
+        if let Some(similar) = most_similar(&line.name, names) {
+            warning = warning.hint(format!("did you mean \"{similar}\"?"));
+        }
+        self.warnings.push(source.place(warning, line.at));
+    }
+
+    fn warn_of_duplicates(&mut self, libraries: &Libraries) {
+        for library in &libraries.read {
+            let mut first: BTreeMap<&str, ()> = BTreeMap::new();
+            for definition in &library.definitions {
+                if first.insert(&definition.name, ()).is_some() {
+                    let says = format!(
+                        "material \"{}\" is defined twice: the first counts",
+                        definition.name
+                    );
+                    let warning =
+                        Diagnostic::warning(codes::DUPLICATE_MATERIAL, says).in_file(&library.path);
+                    self.warnings
+                        .push(at_line(warning, &library.source, definition.at));
+                }
+            }
+        }
+    }
+}

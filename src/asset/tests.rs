@@ -1,0 +1,595 @@
+//! Each defect of files in the wild, and of the parser, as a tiny file.
+
+use super::*;
+use crate::diag::{Diagnostic, Severity};
+use std::fs;
+use std::path::Path;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+/// A folder of files that goes when the test ends.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn of(files: &[(&str, &[u8])]) -> Folder {
+        static NEXT: AtomicU32 = AtomicU32::new(0);
+        let unique = NEXT.fetch_add(1, Ordering::Relaxed);
+        let name = format!("luxel-asset-{}-{unique}", std::process::id());
+        let path = std::env::temp_dir().join(name);
+        fs::create_dir_all(&path).expect("a folder");
+        for (name, bytes) in files {
+            fs::write(path.join(name), bytes).expect("a file");
+        }
+        Folder(path)
+    }
+
+    fn load(&self, name: &str) -> (Result<Mesh, Vec<Diagnostic>>, Vec<Diagnostic>) {
+        let mut loader = Loader::new();
+        let id = loader.mesh(&self.0.join(name));
+        let warnings = loader.warnings().to_vec();
+        let store = loader.finish();
+        (id.map(|id| Mesh::clone(store.mesh(id))), warnings)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+fn load(obj: impl AsRef<[u8]>) -> (Result<Mesh, Vec<Diagnostic>>, Vec<Diagnostic>) {
+    Folder::of(&[("a.obj", obj.as_ref())]).load("a.obj")
+}
+
+/// A mesh that loads without a word.
+fn clean(obj: impl AsRef<[u8]>) -> Mesh {
+    let (mesh, warnings) = load(obj);
+    assert_eq!(warnings, []);
+    mesh.expect("a mesh")
+}
+
+/// The only error: code, line, message.
+fn error(obj: impl AsRef<[u8]>) -> (&'static str, u32, String) {
+    let (mesh, _) = load(obj);
+    let errors = mesh.expect_err("an error");
+    assert_eq!(errors.len(), 1, "{errors:?}");
+    assert!(
+        errors[0]
+            .file
+            .as_ref()
+            .is_some_and(|file| file.ends_with("a.obj"))
+    );
+    let line = errors[0].span.as_ref().map_or(0, |span| span.line);
+    (errors[0].code, line, errors[0].message.clone())
+}
+
+fn codes_and_lines(found: &[Diagnostic]) -> Vec<(&'static str, u32)> {
+    found
+        .iter()
+        .map(|one| (one.code, one.span.as_ref().map_or(0, |span| span.line)))
+        .collect()
+}
+
+fn points(mesh: &Mesh) -> Vec<[f64; 3]> {
+    mesh.corners
+        .iter()
+        .map(|&c| mesh.positions[c as usize].to_array())
+        .collect()
+}
+
+const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+#[test]
+fn numbers_keep_all_their_bits() {
+    let mesh = clean("v 0.1 +.5 2.\nv 1e-3 1E3 -0\nv 3 4 0.3333333333333333\nf 1 2 3");
+    assert_eq!(
+        points(&mesh),
+        [
+            [0.1, 0.5, 2.0],
+            [1e-3, 1e3, 0.0],
+            [3.0, 4.0, 0.3333333333333333]
+        ]
+    );
+}
+
+#[test]
+fn layout_does_not_matter() {
+    let plain = points(&clean(format!("{TRIANGLE}f 1 2 3\n")));
+    for text in [
+        format!(
+            "\u{feff}# head\r\n{}f\t1  2 3 \r\n",
+            TRIANGLE.replace('\n', "\r\n")
+        ),
+        format!("{TRIANGLE}f 1 2 3 # comment"),
+        format!("{TRIANGLE}f 1 2 \\\n3"),
+        format!("o a\n{TRIANGLE}g b c\ns 1\nl 1 2\np 1\nvp 0\nf 1 2 3"),
+        format!("{TRIANGLE}f -3 -2 -1"),
+        format!("f 1 2 3\n{TRIANGLE}"),
+        TRIANGLE.replace("0\n", "0 1\n") + "f 1 2 3",
+        TRIANGLE.replace("0\n", "0 0.5 nan 1\n") + "f 1 2 3",
+        format!("v nan inf x\n{TRIANGLE}f 2 3 4"),
+    ] {
+        assert_eq!(points(&clean(&text)), plain, "{text}");
+    }
+    let latin: Vec<u8> = [b"# caf\xE9\n", TRIANGLE.as_bytes(), b"f 1 2 3"].concat();
+    assert_eq!(points(&clean(latin)), plain);
+    assert_eq!(
+        points(&clean(format!(
+            "#{}\n{TRIANGLE}f 1 2 3",
+            "x".repeat(1 << 20)
+        ))),
+        plain
+    );
+}
+
+#[test]
+fn a_seam_keeps_both_uvs_exactly() {
+    let mesh = clean(format!(
+        "{SQUARE}vt 0.1 0.2\nvt 0.3 0.4\nvt 0.5 0.6\nvt 7 8\nvt -9 10\nvt 0.7\nf 1/1 2/2 3/3\nf 1/4 3/5 4/6\n"
+    ));
+    let uv = |u, v| Some(DVec2::new(u, v));
+    assert_eq!(
+        mesh.uvs,
+        [
+            uv(0.1, 0.2),
+            uv(0.3, 0.4),
+            uv(0.5, 0.6),
+            uv(7.0, 8.0),
+            uv(-9.0, 10.0),
+            uv(0.7, 0.0)
+        ]
+    );
+    assert_eq!(mesh.corners[0], mesh.corners[3], "one position, two uvs");
+}
+
+#[test]
+fn mixed_faces_keep_their_own_attributes_in_any_order() {
+    let head = format!("{SQUARE}vt 0.1 0.2\nvt 0.3 0.4\nvt 0.5 0.6\nvn 0 0 2\nvn 0 3 0\n");
+    let faces = [
+        "f 1 2 3",
+        "f 1/3 2/2 3/1",
+        "f 4//2 1//1 2//2",
+        "f 2/2/2 3/3/1 4/1/2",
+        "f 3/2/1 4/1/2 1/3/1",
+    ];
+    let uvs = |list: [usize; 3]| {
+        list.map(|i| Some(DVec2::new([0.1, 0.3, 0.5][i - 1], [0.2, 0.4, 0.6][i - 1])))
+    };
+    let normals = |list: [usize; 3]| list.map(|i| Some([DVec3::Z, DVec3::Y][i - 1]));
+    let none = (None, None);
+    let own = [
+        ([1, 2, 3], none),
+        ([1, 2, 3], (Some([3, 2, 1]), None)),
+        ([4, 1, 2], (None, Some([2, 1, 2]))),
+        ([2, 3, 4], (Some([2, 3, 1]), Some([2, 1, 2]))),
+        ([3, 4, 1], (Some([2, 1, 3]), Some([1, 2, 1]))),
+    ];
+    let square = points(&clean(
+        format!("{SQUARE}f 1 2 3\nf 4 4 4\nf 1 3 4").replace("f 4 4 4\n", ""),
+    ));
+    let place = [square[0], square[1], square[2], square[5]];
+    for turn in 0..faces.len() {
+        let order: Vec<usize> = (0..faces.len()).map(|i| (i + turn) % faces.len()).collect();
+        let text: Vec<&str> = order.iter().map(|&i| faces[i]).collect();
+        let mesh = clean(format!("{head}{}", text.join("\n")));
+        for (t, &i) in order.iter().enumerate() {
+            let (at, (uv, normal)) = own[i];
+            let corners = 3 * t..3 * t + 3;
+            assert_eq!(
+                points(&mesh)[corners.clone()],
+                at.map(|v| place[v - 1]),
+                "{text:?}"
+            );
+            assert_eq!(
+                mesh.uvs[corners.clone()],
+                uv.map_or([None; 3], uvs),
+                "{text:?}"
+            );
+            assert_eq!(
+                mesh.normals[corners],
+                normal.map_or([None; 3], normals),
+                "{text:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn attributes_that_cannot_be_used_are_told_of_and_absent() {
+    let (mesh, warnings) = load(format!(
+        "{TRIANGLE}vt 0 0\nf 1/1 2 3\nf 1 2\nf 1 2 2\nf 3 2 1"
+    ));
+    assert_eq!(
+        codes_and_lines(&warnings),
+        [("W108", 6), ("W109", 5), ("W105", 7)]
+    );
+    let mesh = mesh.expect("a mesh");
+    assert_eq!((mesh.triangle_count(), mesh.uvs.len()), (2, 0));
+    let (mesh, warnings) = load(format!(
+        "{TRIANGLE}vt nan 0\nvn 0 0 0\nvn 0 0 1e-200\nf 1/1/1 2/1/2 3/1/1"
+    ));
+    assert_eq!(codes_and_lines(&warnings), [("W107", 7), ("W106", 7)]);
+    let mesh = mesh.expect("a mesh");
+    assert_eq!(mesh.uvs, [None; 3]);
+    assert_eq!(mesh.normals, [None, Some(DVec3::Z), None]);
+    let (mesh, warnings) = load(format!("{TRIANGLE}f 1/1 2/2 3/3"));
+    assert_eq!(codes_and_lines(&warnings), [("W115", 4)]);
+    assert!(mesh.expect("a mesh").uvs.is_empty());
+}
+
+#[test]
+fn errors_name_their_line() {
+    let at = |obj: String| error(obj);
+    let says = |code, line, message: &str| (code, line, message.to_owned());
+    assert_eq!(
+        at(format!("{TRIANGLE}f 1 2 0")),
+        says("E103", 4, "`v` indices start at 1, and this face uses 0")
+    );
+    assert_eq!(
+        at(format!("{TRIANGLE}f 1 2 7")),
+        says("E103", 4, "the face uses `v` 7, but the file has 3")
+    );
+    assert_eq!(at(format!("{TRIANGLE}vt 0 0\nf 1/1 2/1 3/2")).1, 5);
+    assert_eq!(
+        at(format!("{TRIANGLE}f 1/9 2/9 9/9")).2,
+        "the face uses `v` 9, but the file has 3"
+    );
+    assert_eq!(at(format!("f -1 -2 -3\n{TRIANGLE}")).1, 1);
+    assert_eq!(at(format!("{TRIANGLE}f 1 2 -9223372036854775808")).1, 4);
+    assert_eq!(
+        at(format!("{TRIANGLE}f 1 2 99999999999999999999")).2,
+        "`99999999999999999999` is not a `v` index"
+    );
+    assert_eq!(at(format!("{TRIANGLE}f 1 2 x")).2, "`x` is not a `v` index");
+    assert_eq!(at(format!("{TRIANGLE}f 1 2 /1")).2, "`/1` names no vertex");
+    assert_eq!(at(format!("{TRIANGLE}f 1 2 3/1/1/1")).0, "E103");
+    assert_eq!(
+        at(format!("v 1 2\n{TRIANGLE}f 1 2 3")),
+        says("E104", 1, "`v` needs 3 numbers, not 2")
+    );
+    let bad = |v: &str| at(format!("{TRIANGLE}{v}\nf 1 2 3\nf 1 2 -1"));
+    assert_eq!(
+        bad("v 0 nan 0"),
+        says(
+            "E105",
+            4,
+            "the vertex is not finite, and the face in line 6 uses it"
+        )
+    );
+    assert_eq!(bad("v 0 1e999 0").1, 4);
+    assert_eq!(
+        bad("v 0 1e200 0").2,
+        "the vertex is beyond 1e100, and the face in line 6 uses it"
+    );
+    assert_eq!(
+        bad("v 0 1,5 0").2,
+        "`1,5` is not a number, and the face in line 6 uses it"
+    );
+    assert_eq!(
+        bad("v 0 1 0 0").2,
+        "the vertex is not finite, and the face in line 6 uses it"
+    );
+    for empty in ["", "# nothing", "v 0 0 0\nl 1 1", "\0\u{1}\u{fffd}"] {
+        assert_eq!(error(empty), says("E102", 0, "the file has no faces"));
+    }
+    assert_eq!(
+        error(format!("{TRIANGLE}f 1 1 2")).2,
+        "no face of the file has an area"
+    );
+}
+
+#[test]
+fn files_that_are_not_there_name_themselves() {
+    let folder = Folder::of(&[("cat.obj", TRIANGLE.as_bytes())]);
+    let errors = Loader::new()
+        .mesh(&folder.0.join("Cta.obj"))
+        .expect_err("an error");
+    assert_eq!(errors[0].code, "E101");
+    assert_eq!(errors[0].hint.as_deref(), Some("did you mean \"cat.obj\"?"));
+    assert_eq!(
+        Loader::new().mesh(&folder.0).expect_err("an error")[0].message,
+        "this is not a file"
+    );
+    let missing = Loader::new()
+        .texture(Path::new("nowhere/x.png"))
+        .expect_err("an error");
+    assert_eq!(missing.file.as_deref(), Some(Path::new("nowhere/x.png")));
+}
+
+#[test]
+fn materials_are_read_as_the_format_allows() {
+    let mtl = b"newmtl grey\nKd 0.5\nnewmtl Material #3\nKd 1 2 0.25 # bright\nKe 3 4 5\nnewmtl bare\nd 0.5\nNs 9\nKs 0 0 0\nillum 2\nnewmtl unused\nmap_Kd gone.png\n";
+    let obj = format!(
+        "mtllib m.mtl\n{TRIANGLE}f 1 2 3\nusemtl Material #3\nf 1 2 3\nusemtl grey # note\nf 1 2 3\nusemtl bear\nf 1 2 3\nusemtl bare\nf 1 2 3\n"
+    );
+    let (mesh, warnings) = Folder::of(&[("a.obj", obj.as_bytes()), ("m.mtl", mtl)]).load("a.obj");
+    let mesh = mesh.expect("a mesh");
+    assert_eq!(mesh.material, [None, Some(0), Some(1), None, Some(2)]);
+    let read: Vec<_> = mesh
+        .materials
+        .iter()
+        .map(|m| (m.name.as_str(), m.color, m.emission))
+        .collect();
+    assert_eq!(
+        read,
+        [
+            ("Material #3", [1.0, 1.0, 0.25], [3.0, 4.0, 5.0]),
+            ("grey", [0.5; 3], [0.0; 3]),
+            ("bare", [0.8; 3], [0.0; 3]),
+        ]
+    );
+    assert_eq!(
+        codes_and_lines(&warnings),
+        [("W110", 3), ("W102", 10), ("W104", 7)]
+    );
+    assert_eq!(warnings[1].hint.as_deref(), Some("did you mean \"bare\"?"));
+}
+
+#[test]
+fn impossible_material_values_are_errors_with_their_line() {
+    for (line, says) in [
+        ("Kd 0.5 x 0", "`x` is not a number"),
+        ("Kd 0.5 0.5", "`Kd` needs one or three numbers, not 2"),
+        ("Kd", "`Kd` needs one or three numbers, not 0"),
+        ("Ke -1 0 0", "`Ke` cannot be -1"),
+        ("Kd nan", "`Kd` cannot be nan"),
+        (
+            "Kd spectral a.rfl 1",
+            "`Kd spectral` is not supported: give linear red, green and blue",
+        ),
+    ] {
+        let mtl = format!("newmtl m\n{line}");
+        let obj = format!("mtllib m.mtl\n{TRIANGLE}usemtl m\nf 1 2 3");
+        let folder = Folder::of(&[("a.obj", obj.as_bytes()), ("m.mtl", mtl.as_bytes())]);
+        let errors = folder.load("a.obj").0.expect_err("an error");
+        assert_eq!(
+            (errors[0].message.as_str(), codes_and_lines(&errors)),
+            (says, vec![("E106", 2)])
+        );
+        assert!(
+            errors[0]
+                .file
+                .as_ref()
+                .is_some_and(|file| file.ends_with("m.mtl"))
+        );
+    }
+}
+
+#[test]
+fn material_files_are_found_by_any_spelling() {
+    let mtl = b"newmtl m\nKd 1 0 0";
+    for (line, codes) in [
+        ("mtllib my mat.mtl", vec![]),
+        ("mtllib .\\my mat.mtl", vec![]),
+        ("mtllib \"my mat.mtl\"", vec![]),
+        ("mtllib other.mtl my mat.mtl", vec![("W101", 1)]),
+        ("mtllib /nowhere/my mat.mtl # where?", vec![("W112", 1)]),
+        ("mtllib other.mtl", vec![("W101", 1)]),
+        ("mtllib", vec![("W102", 5)]),
+    ] {
+        let obj = format!("{line}\n{TRIANGLE}usemtl m\nf 1 2 3");
+        let folder = Folder::of(&[("a.obj", obj.as_bytes()), ("my mat.mtl", mtl)]);
+        let (mesh, warnings) = folder.load("a.obj");
+        assert_eq!(codes_and_lines(&warnings), codes, "{line}");
+        let found = !line.ends_with("other.mtl") && line != "mtllib";
+        assert_eq!(
+            mesh.expect("a mesh").materials.len(),
+            usize::from(found),
+            "{line}"
+        );
+    }
+}
+
+/// A PNG of one row.
+fn png(color: png::ColorType, depth: png::BitDepth, width: u32, data: &[u8]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, 1);
+    encoder.set_color(color);
+    encoder.set_depth(depth);
+    let mut writer = encoder.write_header().expect("a header");
+    writer.write_image_data(data).expect("data");
+    writer.finish().expect("an end");
+    bytes
+}
+
+#[test]
+fn texture_lines_have_options_and_spaces() {
+    let image = png(png::ColorType::Rgb, png::BitDepth::Eight, 1, &[1, 2, 3]);
+    for (line, codes) in [
+        ("map_Kd my tex.png", vec![]),
+        ("map_Kd -s 1 1 1 -o 0 -clamp off -bm 2 my tex.png", vec![]),
+        ("map_Kd -s 2 2 1 -clamp on my tex.png", vec![("W104", 2)]),
+        ("map_Kd .\\my tex.png", vec![]),
+        ("map_Kd C:\\art\\my tex.png", vec![("W103", 2)]),
+        ("map_Kd My Tex.png", vec![("W103", 2)]),
+        ("Kd 0 0 0\nmap_Kd my tex.png", vec![("W113", 1)]),
+        ("map_Kd my tex.png\nmap_d my tex.png", vec![("W104", 3)]),
+    ] {
+        let mtl = format!("newmtl m\n{line}");
+        let obj = format!("mtllib m.mtl\n{TRIANGLE}usemtl m\nf 1 2 3");
+        let folder = Folder::of(&[
+            ("a.obj", obj.as_bytes()),
+            ("m.mtl", mtl.as_bytes()),
+            ("my tex.png", &image),
+        ]);
+        let (mesh, warnings) = folder.load("a.obj");
+        let found = !codes.contains(&("W103", 2));
+        assert_eq!(codes_and_lines(&warnings), codes, "{line}");
+        assert_eq!(
+            mesh.expect("a mesh").materials[0].texture.is_some(),
+            found,
+            "{line}"
+        );
+    }
+}
+
+#[test]
+fn images_become_eight_bit_rgb() {
+    use png::{BitDepth::*, ColorType::*};
+    for (bytes, texels) in [
+        (
+            png(Rgb, Eight, 2, &[1, 2, 3, 4, 5, 6]),
+            vec![1, 2, 3, 4, 5, 6],
+        ),
+        (png(Rgba, Eight, 1, &[9, 8, 7, 0]), vec![9, 8, 7]),
+        (
+            png(Grayscale, Eight, 2, &[7, 200]),
+            vec![7, 7, 7, 200, 200, 200],
+        ),
+        (
+            png(Grayscale, Sixteen, 3, &[0, 128, 0, 129, 255, 255]),
+            vec![0, 0, 0, 1, 1, 1, 255, 255, 255],
+        ),
+    ] {
+        let folder = Folder::of(&[("t.jpg", &bytes)]);
+        let mut loader = Loader::new();
+        let id = loader.texture(&folder.0.join("t.jpg")).expect("a texture");
+        let store = loader.finish();
+        let texture = store.texture(id);
+        assert_eq!(
+            (texture.width as usize, texture.height),
+            (texels.len() / 3, 1)
+        );
+        assert_eq!(texture.texels[..], texels[..]);
+    }
+}
+
+#[test]
+fn images_that_cannot_be_used_say_why() {
+    let good = png(png::ColorType::Rgb, png::BitDepth::Eight, 1, &[1, 2, 3]);
+    let mut huge = good.clone();
+    huge[16..24].copy_from_slice(&[0, 1, 0, 0, 0, 1, 0, 0]);
+    let crc = crc32(&huge[12..29]);
+    huge[29..33].copy_from_slice(&crc.to_be_bytes());
+    for (bytes, code) in [
+        (&good[..good.len() - 20], "E108"),
+        (&good[..20], "E108"),
+        (&huge[..], "E109"),
+        (b"#?RADIANCE\n", "E107"),
+        (b"GIF89a", "E107"),
+        (b"", "E107"),
+    ] {
+        let folder = Folder::of(&[("t.png", bytes)]);
+        let error = Loader::new()
+            .texture(&folder.0.join("t.png"))
+            .expect_err("an error");
+        assert_eq!(error.code, code, "{error}");
+        assert!(error.file.is_some_and(|file| file.ends_with("t.png")));
+    }
+}
+
+/// The checksum of PNG chunks (ISO 3309), bit by bit.
+fn crc32(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(u32::MAX, |crc, &byte| {
+        (0..8).fold(crc ^ u32::from(byte), |c, _| {
+            if c & 1 == 1 {
+                (c >> 1) ^ 0xEDB8_8320
+            } else {
+                c >> 1
+            }
+        })
+    })
+}
+
+#[test]
+fn a_file_is_read_once_and_the_hash_knows_content_and_order_only() {
+    let obj = format!("{TRIANGLE}f 1 2 3");
+    let other = format!("{TRIANGLE}f 3 2 1");
+    let hash = |files: [(&str, &str); 2]| {
+        let folder = Folder::of(&files.map(|(name, text)| (name, text.as_bytes())));
+        let mut loader = Loader::new();
+        let a = loader.mesh(&folder.0.join(files[0].0)).expect("a mesh");
+        let b = loader.mesh(&folder.0.join(files[1].0)).expect("a mesh");
+        assert_eq!(loader.mesh(&folder.0.join(".").join(files[0].0)), Ok(a));
+        let store = loader.finish();
+        assert_eq!((a, b, store.meshes.len()), (MeshId(0), MeshId(1), 2));
+        assert_eq!(store.bytes(), (obj.len() + other.len()) as u64);
+        store.hash()
+    };
+    let first = hash([("a.obj", &obj), ("b.obj", &other)]);
+    assert_eq!(first, hash([("c.obj", &obj), ("d.obj", &other)]));
+    assert_ne!(first, hash([("a.obj", &other), ("b.obj", &obj)]));
+    assert_ne!(AssetStore::default().hash(), first);
+}
+
+/// SplitMix64 (Steele, Lea and Flood 2014).
+fn next(state: &mut u64) -> u64 {
+    *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+    let mut z = *state;
+    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    z ^ (z >> 31)
+}
+
+#[test]
+fn no_damage_to_a_file_is_a_panic() {
+    let obj = format!(
+        "mtllib m.mtl\n{SQUARE}vt 0 0\nvt 1 0.5\nvn 0 0 1\nusemtl a\nf 1/1/1 2/2/1 3/1/1 4/2/1\nf -1 -2 -3 -4 1\nusemtl b\nf 1//1 2//1 \\\n3//1\n"
+    );
+    let mtl = "newmtl a\nKd 0.5 0.5 0.5\nmap_Kd -s 1 1 1 t.png\nnewmtl b\nKe 1 2 3\nd 0.5\n";
+    let pieces: [&[u8]; 16] = [
+        b"-", b"/", b"\\\n", b"#", b" ", b"\n", b"0", b"9", b"nan", b"1e999", b"\xFF", b"\0",
+        b"f ", b"v ", b"usemtl ", b"\"",
+    ];
+    let folder = Folder::of(&[]);
+    let (mut state, mut loaded, mut refused) = (1, 0, 0);
+    for _ in 0..5000 {
+        let mut texts = [obj.clone().into_bytes(), mtl.as_bytes().to_vec()];
+        for _ in 0..=next(&mut state) % 3 {
+            let text = &mut texts[(next(&mut state) % 4 == 0) as usize];
+            let at = next(&mut state) as usize % text.len();
+            let piece = pieces[next(&mut state) as usize % pieces.len()];
+            match next(&mut state) % 3 {
+                0 => drop(text.splice(at..at, piece.iter().copied())),
+                1 => drop(text.remove(at)),
+                _ => text[at] = piece[0],
+            }
+        }
+        fs::write(folder.0.join("a.obj"), &texts[0]).expect("a file");
+        fs::write(folder.0.join("m.mtl"), &texts[1]).expect("a file");
+        match folder.load("a.obj").0 {
+            Ok(mesh) => {
+                loaded += 1;
+                check_shape(&mesh);
+            }
+            Err(errors) => {
+                refused += 1;
+                assert!(
+                    errors.iter().all(|e| e.severity == Severity::Error
+                        && e.file.is_some()
+                        && e.code != "E110"),
+                    "{errors:?}"
+                );
+            }
+        }
+    }
+    assert!(
+        loaded > 500 && refused > 500,
+        "{loaded} loaded, {refused} refused"
+    );
+}
+
+/// What [`Mesh`] promises of its arrays.
+fn check_shape(mesh: &Mesh) {
+    let corners = 3 * mesh.triangle_count();
+    assert_eq!(
+        (mesh.corners.len(), mesh.material.len()),
+        (corners, corners / 3)
+    );
+    assert!(mesh.uvs.is_empty() || mesh.uvs.len() == corners);
+    assert!(mesh.normals.is_empty() || mesh.normals.len() == corners);
+    assert!(
+        mesh.corners
+            .iter()
+            .all(|&c| mesh.positions[c as usize].is_finite())
+    );
+    assert!(
+        mesh.material
+            .iter()
+            .flatten()
+            .all(|&m| (m as usize) < mesh.materials.len())
+    );
+    let smooth = normals::smooth(mesh, 60.0);
+    assert!(smooth.len() == corners && smooth.iter().all(|n| (n.length() - 1.0).abs() < 1e-12));
+}
