@@ -1,7 +1,7 @@
 //! The materials of a mesh: from the `mtllib` and `usemtl` lines of an OBJ file to [`MeshMaterial`]s.
 
 use super::loader::Loader;
-use super::paths::{beside, library_names, most_similar, similar_file};
+use super::paths::{beside, library_names, most_similar, same_name_beside, similar_file};
 use super::scan::{Named, Scan, at_line};
 use super::{MeshMaterial, TextureId, codes, mtl, text};
 use crate::diag::Diagnostic;
@@ -225,11 +225,7 @@ impl Loader {
         if let Some(found) = named.iter().find(|path| path.is_file()) {
             return Some(found.clone());
         }
-        let file_name = named[0].file_name()?;
-        let found = source.path.with_file_name(file_name);
-        if !found.is_file() {
-            return None;
-        }
+        let found = same_name_beside(source.path, text::without_comment(name))?;
         let says = format!("\"{name}\" does not exist: taken from beside this file instead");
         let warning = Diagnostic::warning(codes::FOUND_BESIDE, says);
         self.warnings.push(source.place(warning, at));

@@ -190,7 +190,7 @@ impl<'a> Builder<'a> {
         self.points.clear();
         for &index in indices {
             let position = self.mesh.positions[(self.base[set] + index) as usize];
-            if !(position.abs().max_element() <= MAX_COORDINATE) {
+            if !position.is_finite() || position.abs().max_element() > MAX_COORDINATE {
                 return Err(bad_vertex(self.source, face, self.points.len(), position));
             }
             self.points.push(position);

@@ -1,6 +1,7 @@
 //! Paths that files name, and what a wrong one may have meant.
 
 use super::mtl::unquote;
+use super::text::without_comment;
 use std::path::{Path, PathBuf};
 
 /// Words of a `mtllib` line that are tried together as one name with spaces.
@@ -15,6 +16,11 @@ pub(super) fn library_names(obj: &Path, names: &str) -> Vec<String> {
         .split_whitespace()
         .take_while(|word| !word.starts_with('#'))
         .collect();
+    let plain = without_comment(names);
+    let alone = words.iter().any(|word| beside(obj, word).is_file());
+    if !alone && same_name_beside(obj, plain).is_some() {
+        return vec![plain.to_owned()];
+    }
     let mut found = Vec::new();
     let mut at = 0;
     while at < words.len() {
@@ -30,10 +36,18 @@ pub(super) fn library_names(obj: &Path, names: &str) -> Vec<String> {
     found
 }
 
+/// The file in the folder of `file` whose name is that of a path that `file` names.
+pub(super) fn same_name_beside(file: &Path, name: &str) -> Option<PathBuf> {
+    let found = file.with_file_name(beside(file, name).file_name()?);
+    found.is_file().then_some(found)
+}
+
 /// A path that a file names, relative to that file; backslashes separate too.
 pub(super) fn beside(file: &Path, name: &str) -> PathBuf {
     let name = unquote(name.trim()).replace('\\', "/");
-    file.parent().unwrap_or(Path::new("")).join(name)
+    let path = file.parent().unwrap_or(Path::new("")).join(name);
+    // Drops the `.` of `./name`.
+    path.components().collect()
 }
 
 pub(super) fn canonical(path: &Path) -> PathBuf {

@@ -301,7 +301,7 @@ fn files_that_are_not_there_name_themselves() {
 fn materials_are_read_as_the_format_allows() {
     let mtl = b"newmtl grey\nKd 0.5\nnewmtl Material #3\nKd 1 2 0.25 # bright\nKe 3 4 5\nnewmtl bare\nd 0.5\nNs 9\nKs 0 0 0\nillum 2\nnewmtl unused\nmap_Kd gone.png\n";
     let obj = format!(
-        "mtllib m.mtl\n{TRIANGLE}f 1 2 3\nusemtl Material #3\nf 1 2 3\nusemtl grey # note\nf 1 2 3\nusemtl bear\nf 1 2 3\nusemtl bare\nf 1 2 3\n"
+        "mtllib m.mtl\n{TRIANGLE}f 1 2 3\nusemtl Material #3\nf 1 2 3\nusemtl grey # note\nf 1 2 3\nusemtl bar\nf 1 2 3\nusemtl bare\nf 1 2 3\n"
     );
     let (mesh, warnings) = Folder::of(&[("a.obj", obj.as_bytes()), ("m.mtl", mtl)]).load("a.obj");
     let mesh = mesh.expect("a mesh");
@@ -401,7 +401,7 @@ fn texture_lines_have_options_and_spaces() {
         ("map_Kd -s 1 1 1 -o 0 -clamp off -bm 2 my tex.png", vec![]),
         ("map_Kd -s 2 2 1 -clamp on my tex.png", vec![("W104", 2)]),
         ("map_Kd .\\my tex.png", vec![]),
-        ("map_Kd C:\\art\\my tex.png", vec![("W103", 2)]),
+        ("map_Kd C:\\art\\my tex.png", vec![("W112", 2)]),
         ("map_Kd My Tex.png", vec![("W103", 2)]),
         ("Kd 0 0 0\nmap_Kd my tex.png", vec![("W113", 1)]),
         ("map_Kd my tex.png\nmap_d my tex.png", vec![("W104", 3)]),

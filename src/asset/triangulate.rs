@@ -10,7 +10,7 @@ pub(super) const MAX_CONCAVE_CORNERS: usize = 10_000;
 pub(super) enum Trouble {
     /// More than [`MAX_CONCAVE_CORNERS`] corners where a fan does not do.
     TooLarge,
-    /// It crosses itself; it was triangulated as well as it goes.
+    /// It crosses itself, as far as that shows; it was triangulated as well as it goes.
     Tangled,
 }
 
@@ -94,7 +94,9 @@ fn clip_ears(flat: &[DVec2], out: &mut Vec<[usize; 3]>) -> Result<(), Trouble> {
         }
         at = after;
     }
-    out.push([ring.before[at], at, ring.after[at]]);
+    let last = [ring.before[at], at, ring.after[at]];
+    clean &= turn(flat[last[0]], flat[last[1]], flat[last[2]]) >= 0.0;
+    out.push(last);
     if clean { Ok(()) } else { Err(Trouble::Tangled) }
 }
 
@@ -235,19 +237,9 @@ mod tests {
     #[test]
     fn degenerate_and_tangled_polygons_end() {
         let mut triangles = Vec::new();
-        let star: Vec<_> = [
-            (1.0, 0.0),
-            (-0.8, 0.6),
-            (0.3, -0.95),
-            (0.3, 0.95),
-            (-0.8, -0.6),
-        ]
-        .into();
-        assert_eq!(
-            triangulate(&polygon(&star), &mut triangles),
-            Err(Trouble::Tangled)
-        );
-        assert_eq!(triangles.len(), 3);
+        let bow = [(0.0, 0.0), (2.0, 2.0), (2.0, 0.0), (0.0, 1.0)];
+        let found = triangulate(&polygon(&bow), &mut triangles);
+        assert_eq!((found, triangles.len()), (Err(Trouble::Tangled), 2));
         for shape in [
             vec![(1.0, 1.0); 7],
             vec![(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0)],
