@@ -50,7 +50,7 @@ const TILT: (f64, f64) = (112.0 / 113.0, 15.0 / 113.0);
 /// Fillet between the cat and the ground plane that cuts it off flat.
 const SOLE_FILLET: f64 = 0.015;
 /// How much thinner than wide an ear is.
-const EAR_SQUEEZE: DVec3 = v(1.0, 1.0, 1.5);
+const EAR_SQUEEZE: DVec3 = v(1.0, 1.0, 1.35);
 /// The tail's axis and radii: from the rump to the cat's left, with the tip lifted.
 const TAIL: [(DVec3, f64); 8] = [
     (v(0.0, 0.1, -0.34), 0.055),
@@ -178,14 +178,14 @@ impl Form {
 
 /// A capsule squeezed in z, from which the cavity before it is taken away.
 fn ear(p: DVec3, base: DVec3, tip: DVec3) -> f64 {
-    let shell = squeezed(p, base, tip, 0.074, 0.016);
+    let shell = squeezed(p, base, tip, 0.08, 0.021);
     -smooth_min(-shell, cavity(p, base, tip), 0.01) / 1.25
 }
 
 /// A smaller ear before the ear, further away from it at the base.
 fn cavity(p: DVec3, base: DVec3, tip: DVec3) -> f64 {
-    let (base, tip) = (base + v(0.0, 0.025, 0.055), tip + v(0.0, -0.02, 0.017));
-    squeezed(p, base, tip, 0.056, 0.009)
+    let (base, tip) = (base + v(0.0, 0.02, 0.06), tip + v(0.0, -0.035, 0.022));
+    squeezed(p, base, tip, 0.05, 0.008)
 }
 
 fn squeezed(p: DVec3, base: DVec3, tip: DVec3, ra: f64, rb: f64) -> f64 {
@@ -194,7 +194,7 @@ fn squeezed(p: DVec3, base: DVec3, tip: DVec3, ra: f64, rb: f64) -> f64 {
 
 /// Base and tip of the ear of a side (1 left, −1 right), in the head's frame.
 fn ear_axis(side: f64) -> (DVec3, DVec3) {
-    (v(side * 0.1, 0.866, 0.075), v(side * 0.138, 1.035, 0.062))
+    (v(side * 0.1, 0.866, 0.075), v(side * 0.14, 1.04, 0.062))
 }
 
 /// Value of the cavity of the ear on the side of `q`, a point of the head's frame: 0 on the ear's inner skin.
