@@ -79,7 +79,7 @@ fn hind(p: DVec3) -> Colour {
     let coat = tabby(p, arc * 14.0, 0.8);
     coat.lerp(
         WHITE,
-        step(0.045, 0.075, p.z + 0.02 * noise(p * 25.0)) * step(0.14, 0.1, p.y),
+        step(0.025, 0.055, p.z + 0.02 * noise(p * 25.0)) * step(0.14, 0.1, p.y),
     )
 }
 

@@ -179,7 +179,7 @@ impl Form {
 /// A capsule squeezed in z, from which the cavity before it is taken away.
 fn ear(p: DVec3, base: DVec3, tip: DVec3) -> f64 {
     let shell = squeezed(p, base, tip, 0.08, 0.021);
-    -smooth_min(-shell, cavity(p, base, tip), 0.01) / 1.25
+    -smooth_min(-shell, cavity(p, base, tip), 0.024) / 1.25
 }
 
 /// A smaller ear before the ear, further away from it at the base.
@@ -194,7 +194,7 @@ fn squeezed(p: DVec3, base: DVec3, tip: DVec3, ra: f64, rb: f64) -> f64 {
 
 /// Base and tip of the ear of a side (1 left, −1 right), in the head's frame.
 fn ear_axis(side: f64) -> (DVec3, DVec3) {
-    (v(side * 0.1, 0.866, 0.075), v(side * 0.14, 1.04, 0.062))
+    (v(side * 0.1, 0.866, 0.075), v(side * 0.138, 1.022, 0.062))
 }
 
 /// Value of the cavity of the ear on the side of `q`, a point of the head's frame: 0 on the ear's inner skin.
@@ -276,7 +276,7 @@ fn fore_leg(blobs: &mut Vec<Blob>, side: f64) {
         0.03,
     );
     add(
-        Form::Ellipsoid(v(side * 0.082, 0.036, 0.195), v(0.058, 0.042, 0.078)),
+        Form::Ellipsoid(v(side * 0.078, 0.036, 0.195), v(0.054, 0.042, 0.078)),
         0.035,
     );
 }
@@ -294,15 +294,15 @@ fn hind_leg(blobs: &mut Vec<Blob>, side: f64) {
     );
     add(
         Form::Capsule(
-            v(side * 0.195, 0.05, -0.03),
-            v(side * 0.205, 0.04, 0.1),
+            v(side * 0.205, 0.05, -0.03),
+            v(side * 0.226, 0.04, 0.08),
             0.05,
             0.046,
         ),
         0.05,
     );
     add(
-        Form::Ellipsoid(v(side * 0.208, 0.036, 0.12), v(0.056, 0.041, 0.075)),
+        Form::Ellipsoid(v(side * 0.23, 0.036, 0.1), v(0.056, 0.041, 0.075)),
         0.03,
     );
 }
