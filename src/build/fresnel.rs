@@ -59,3 +59,61 @@ fn schlick(ior: f64, total: f64) -> f64 {
     let w6 = (w * w * w) * (w * w * w);
     k0 * (1.0 - total) + (1.0 - k0) * w6 * (1.0 / 3.0 - 2.0 * w / 7.0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::ln;
+
+    /// F_ext for n > 1 in closed form: Duntley, "The optical properties of diffusing materials", 1942 (by Walsh).
+    fn walsh(n: f64) -> f64 {
+        let n2 = n * n;
+        let n4 = n2 * n2;
+        0.5 + (n - 1.0) * (3.0 * n + 1.0) / (6.0 * (n + 1.0) * (n + 1.0))
+            + n2 * (n2 - 1.0) * (n2 - 1.0) / ((n2 + 1.0) * (n2 + 1.0) * (n2 + 1.0))
+                * ln((n - 1.0) / (n + 1.0))
+            - 2.0 * n2 * n * (n2 + 2.0 * n - 1.0) / ((n2 + 1.0) * (n4 - 1.0))
+            + 8.0 * n4 * (n4 + 1.0) / ((n2 + 1.0) * (n4 - 1.0) * (n4 - 1.0)) * ln(n)
+    }
+
+    #[test]
+    fn means_agree_with_the_closed_form() {
+        assert!((external_reflectance(1.5, Fresnel::Exact) - 0.091_778_0).abs() < 5e-8);
+        assert!((internal_reflectance(1.5, Fresnel::Exact) - 0.596_345_7).abs() < 5e-8);
+        for n in [1.1, 1.33, 1.5, 2.4, 10.0] {
+            let error = external_reflectance(n, Fresnel::Exact) - walsh(n);
+            assert!(error.abs() < 1e-10, "{n}: {error}");
+        }
+    }
+
+    #[test]
+    fn inside_and_outside_are_two_sides_of_one_surface() {
+        for fresnel in [Fresnel::Exact, Fresnel::Off] {
+            for n in [0.4, 0.99, 1.0, 1.01, 3.0] {
+                let swapped = external_reflectance(1.0 / n, fresnel);
+                let error = internal_reflectance(n, fresnel) - swapped;
+                assert!(error.abs() < 1e-12, "{fresnel:?} {n}: {error}");
+            }
+        }
+        assert_eq!(external_reflectance(1.0, Fresnel::Exact), 0.0);
+    }
+
+    #[test]
+    fn schlick_is_the_integral_of_its_formula() {
+        for n in [0.6, 1.0, 1.5] {
+            let k0 = ((n - 1.0) / (n + 1.0) * ((n - 1.0) / (n + 1.0))) as f64;
+            let steps = 200_000;
+            let mean: f64 = (0..steps)
+                .map(|i| {
+                    let c = (f64::from(i) + 0.5) / f64::from(steps);
+                    let total = 1.0 - c * c > n * n;
+                    let w = 1.0 - c;
+                    let r = k0 + (1.0 - k0) * (w * w * w * w * w);
+                    2.0 * c * if total { 1.0 } else { r } / f64::from(steps)
+                })
+                .sum();
+            let error = external_reflectance(n, Fresnel::Schlick) - mean;
+            assert!(error.abs() < 2e-5, "{n}: {error}");
+        }
+    }
+}

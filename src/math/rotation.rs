@@ -87,3 +87,49 @@ pub fn quaternion(q: [f64; 4]) -> DMat3 {
         ),
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quarter_turns_are_exact() {
+        for k in -9..9 {
+            let (s, c) = sin_cos_deg(90.0 * f64::from(k) + 360e9);
+            let expected = [(0.0, 1.0), (1.0, 0.0), (0.0, -1.0), (-1.0, 0.0)][(k & 3) as usize];
+            assert_eq!((s, c), expected);
+            assert!(s.to_bits() != (-0.0f64).to_bits() && c.to_bits() != (-0.0f64).to_bits());
+        }
+        let quarter = axis_angle_deg(DVec3::new(0.0, 1e-300, 0.0), 90.0);
+        assert_eq!(quarter * DVec3::X, DVec3::NEG_Z);
+        assert_eq!(
+            axis_angle_deg(DVec3::new(1.0, -2.0, 0.3), -720.0),
+            DMat3::IDENTITY
+        );
+        assert_eq!(euler_deg(DVec3::new(90.0, 0.0, 90.0)) * DVec3::Z, DVec3::X);
+    }
+
+    #[test]
+    fn any_angle_is_that_of_the_library() {
+        for i in -2000..2000 {
+            let deg = f64::from(i) * 0.737;
+            let (s, c) = sin_cos_deg(deg);
+            let t = sin_cos(deg.to_radians());
+            assert!((s - t.0).abs() < 1e-14 && (c - t.1).abs() < 1e-14, "{deg}");
+            assert!((s * s + c * c - 1.0).abs() < 4e-16, "{deg}");
+        }
+    }
+
+    #[test]
+    fn directions_have_any_length() {
+        for size in [1e-300, 1e-20, 1.0, 1e20, 1e300] {
+            let u = unit(DVec3::new(3.0, 0.0, -4.0) * size).unwrap_or_default();
+            assert!((u - DVec3::new(0.6, 0.0, -0.8)).length() < 1e-15, "{size}");
+            let half = quaternion([0.0, 0.0, size, size]);
+            assert!((half * DVec3::X - DVec3::Y).length() < 1e-15, "{size}");
+        }
+        assert_eq!(unit(DVec3::ZERO), None);
+        assert_eq!(unit(DVec3::new(f64::NAN, 1.0, 0.0)), None);
+        assert_eq!(quaternion([0.0; 4]), DMat3::IDENTITY);
+    }
+}
