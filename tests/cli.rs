@@ -424,3 +424,17 @@ fn nothing_is_left_beside_the_picture() {
     assert_eq!(folder.names(), ["a.exr", "scene.ron"]);
     assert!(Path::new(&folder.path("a.exr")).is_file());
 }
+
+#[test]
+fn the_scene_of_the_readme_reads() {
+    let readme = include_str!("../README.md");
+    let scene = readme
+        .split("```ron\n")
+        .nth(1)
+        .and_then(|rest| rest.split("```").next())
+        .expect("a scene");
+    let read = luxel::scene::parse(scene, Path::new("scenes/readme.ron"));
+    let (desc, warnings) = read.expect("no errors");
+    assert!(warnings.is_empty(), "{warnings:?}");
+    luxel::world::spawn(&desc).expect("its files are there");
+}
