@@ -35,10 +35,12 @@ impl Progress {
                 }
                 // The build is over when tracing counts: its time says nothing about the samples to come.
                 let since = *tracing_since.get_or_insert_with(Instant::now);
+                let spent = launched.elapsed();
+                let clock = limit.map_or(0.0, |limit| spent.as_secs_f64() / limit.as_secs_f64());
                 bar.set_length(total);
-                bar.set_position(samples);
+                bar.set_position(samples.max((total as f64 * clock.min(1.0)) as u64));
                 let by_samples = remaining(since.elapsed(), samples, total);
-                let by_clock = limit.map(|limit| limit.saturating_sub(launched.elapsed()));
+                let by_clock = limit.map(|limit| limit.saturating_sub(spent));
                 bar.set_message(match by_samples.into_iter().chain(by_clock).min() {
                     Some(left) => format!("{} left", words(left)),
                     None => String::new(),
