@@ -1,5 +1,5 @@
 //! Scenes for the kernels, made without files or worlds, and a small random generator.
-#![allow(dead_code, reason = "each test binary uses its part")]
+#![allow(dead_code, unreachable_pub, reason = "each test binary uses its part")]
 
 use luxel::build::bvh::{Accel, Primitives, SphereItem, build, sphere_blocks};
 use luxel::flat::{

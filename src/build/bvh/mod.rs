@@ -123,18 +123,20 @@ fn finite_or_empty(b: Aabb) -> Aabb {
     }
 }
 
+/// The box of a triangle; empty if something is not finite.
+fn triangle_bounds(v: &[Vec3; 3]) -> Aabb {
+    // Minima drop NaN: ask for it first.
+    if v.iter().all(|v| v.is_finite()) {
+        Aabb::point(v[0]).with(v[1]).with(v[2])
+    } else {
+        Aabb::EMPTY
+    }
+}
+
 /// One box per primitive: triangles, then spheres, then instances.
 fn items_of(p: &Primitives) -> Vec<tree::Item> {
     use tree::{Item, Kind};
-    let triangles = p.triangles.iter().map(|v| {
-        // A comparison with NaN is false, so that minima drop it: ask for it first.
-        let finite = v.iter().all(|v| v.is_finite());
-        if finite {
-            Aabb::point(v[0]).with(v[1]).with(v[2])
-        } else {
-            Aabb::EMPTY
-        }
-    });
+    let triangles = p.triangles.iter().map(triangle_bounds);
     let spheres = p.spheres.iter().map(|s| sphere_bounds(s.center, s.radius));
     let instances = p.instances.iter().map(|&b| finite_or_empty(b));
     let number = |kind| move |(i, bounds)| Item::new(bounds, kind, i as u32);

@@ -1,6 +1,6 @@
 //! What a built tree promises, checked: for tests.
 
-use super::{Built, Primitives, sphere_bounds};
+use super::{Built, Primitives, sphere_bounds, triangle_bounds};
 use crate::flat::bvh::{MAX_DEPTH, WIDTH, kind};
 use crate::math::Aabb;
 
@@ -94,8 +94,7 @@ impl Walk<'_> {
                 return Err(format!("triangle {prim} is not in its place"));
             }
             self.seen[0][prim as usize] += 1;
-            let v = self.p.triangles[prim as usize];
-            let own = Aabb::point(v[0]).with(v[1]).with(v[2]);
+            let own = triangle_bounds(&self.p.triangles[prim as usize]);
             inside(bounds, &own, "triangle")?;
         }
         Ok(())
