@@ -1,1 +1,149 @@
+//! Every operation of every backend against one lane, bit for bit.
 
+#![allow(
+    unsafe_code,
+    reason = "each backend runs in an entry of its instruction set"
+)]
+
+use super::{Lanes, WideLanes, portable};
+
+/// Signs, zeros, denormals, halfway cases of rounding, infinities and NaN.
+const VALUES: [f32; 16] = [
+    0.0,
+    -0.0,
+    1.0,
+    -1.0,
+    1.0 + f32::EPSILON,
+    -3.0,
+    0.1,
+    f32::MIN_POSITIVE,
+    1e-45,
+    -1e-40,
+    f32::MAX,
+    f32::MIN,
+    f32::INFINITY,
+    f32::NEG_INFINITY,
+    f32::NAN,
+    16_777_217.0,
+];
+
+/// Results that are computed: the sign and payload of a NaN depend on the order of operands, which is nobody's.
+fn computed(x: f32) -> u32 {
+    if x.is_nan() {
+        f32::NAN.to_bits()
+    } else {
+        x.to_bits()
+    }
+}
+
+/// Bits of all operations on lanes that hold `a[i]` and `b[i]`, lane by lane.
+#[inline(always)]
+fn operations<L: Lanes>(a: &[f32; 16], b: &[f32; 16]) -> Vec<[u32; 22]> {
+    let mut out = vec![[0; 22]; 16];
+    let mut at = 0;
+    while at < 16 {
+        let [x, y] = [L::load(&a[at..]), L::load(&b[at..])];
+        let [w, v] = [x.widen(), y.widen()];
+        let third = L::Wide::splat(1.0 / 3.0);
+        let calculated = [
+            x + y,
+            x - y,
+            x * y,
+            x / y,
+            L::narrow((w * third + v) * third),
+            L::narrow(w - v / third),
+            L::narrow(w.sqrt()),
+            L::narrow(w / v),
+            L::narrow(L::Wide::load(&[1e-46; 16]) * w),
+        ];
+        let chosen = [
+            -x,
+            x.abs(),
+            x.min(y),
+            x.max(y),
+            L::select(x.lt(y), x, y),
+            L::select(x.le(y), y, x),
+            L::select(x.lt(y) & L::splat(0.0).le(x), x, y),
+            L::select(x.lt(y) | L::splat(0.0).le(x), x, y),
+            L::narrow(w.min(v)),
+            L::narrow(w.max(v)),
+            L::narrow(w.copysign(-v)),
+            L::narrow(w.positive_or(v)),
+        ];
+        let mut lanes = [0.0; 16];
+        for (k, value) in calculated.iter().chain(&chosen).enumerate() {
+            value.store(&mut lanes);
+            for i in 0..L::N {
+                let exact = k >= calculated.len() && k < calculated.len() + 8;
+                out[at + i][k] = if exact {
+                    lanes[i].to_bits()
+                } else {
+                    computed(lanes[i])
+                };
+            }
+        }
+        let bits = L::bits(x.lt(y));
+        (0..L::N).for_each(|i| out[at + i][21] = bits >> i & 1);
+        assert_eq!(
+            w.any_not_negative(),
+            a[at..at + L::N].iter().any(|x| *x >= 0.0)
+        );
+        at += L::N;
+    }
+    out
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn on_avx2(a: &[f32; 16], b: &[f32; 16]) -> Vec<[u32; 22]> {
+    operations::<super::avx2::F32x8>(a, b)
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,avx512f,avx512vl,avx512dq,avx512bw")]
+fn on_avx512(a: &[f32; 16], b: &[f32; 16]) -> Vec<[u32; 22]> {
+    operations::<super::avx512::F32x16>(a, b)
+}
+
+#[test]
+fn every_backend_gives_the_bits_of_one_lane() {
+    use crate::trace::isa::{Isa, Level};
+    for turn in 0..16 {
+        let a = VALUES;
+        let mut b = VALUES;
+        b.rotate_left(turn);
+        let expected = operations::<f32>(&a, &b);
+        assert_eq!(
+            operations::<portable::F32x8>(&a, &b),
+            expected,
+            "portable, turn {turn}"
+        );
+        #[cfg(target_arch = "x86_64")]
+        if Isa::available(Level::Avx2).is_some() {
+            // SAFETY: just asked.
+            assert_eq!(unsafe { on_avx2(&a, &b) }, expected, "avx2, turn {turn}");
+        }
+        #[cfg(target_arch = "x86_64")]
+        if Isa::available(Level::Avx512).is_some() {
+            // SAFETY: just asked.
+            assert_eq!(
+                unsafe { on_avx512(&a, &b) },
+                expected,
+                "avx512, turn {turn}"
+            );
+        }
+    }
+}
+
+#[test]
+fn minimum_and_maximum_are_selects() {
+    let second = |x: f32, y: f32| (Lanes::min(x, y).to_bits(), Lanes::max(x, y).to_bits());
+    let nan = f32::NAN;
+    assert_eq!(second(nan, 1.0), (1f32.to_bits(), 1f32.to_bits()));
+    assert_eq!(second(1.0, nan), (nan.to_bits(), nan.to_bits()));
+    assert_eq!(
+        second(0.0, -0.0),
+        ((-0.0f32).to_bits(), (-0.0f32).to_bits())
+    );
+    assert_eq!(second(-0.0, 0.0), (0, 0));
+}
