@@ -1,5 +1,7 @@
 //! Worlds and what is built of them: poses against independent matrices, invariances of the buffers to the bit.
 
+#![allow(clippy::unwrap_used, reason = "a test may")]
+
 use glam::{DVec3, Vec3};
 use luxel::asset::AssetStore;
 use luxel::build::{Accel, BuildOptions, BuildTimes, SceneBuilder, buffer_bytes};
