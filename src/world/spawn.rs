@@ -6,10 +6,10 @@ use super::components::{
 };
 use super::{Pose, codes, files::Files, pose};
 use crate::asset::{AssetStore, Filter, Mesh, MeshId, Wrap};
-use crate::diag::{self, Diagnostic};
+use crate::diag::{self, Diagnostic, Severity};
 use crate::math::{DMat3, DVec3, axis_angle_deg, euler_deg, quaternion, unit};
 use crate::scene::{
-    CameraDesc, CameraPose, ColorDesc, EntityDesc, MaterialDesc, NormalsDesc, RotateDesc,
+    CameraDesc, CameraPose, ColorDesc, EntityDesc, MaterialDesc, NormalsDesc, Placed, RotateDesc,
     SceneDesc, ShapeDesc, TextureFilterDesc, TransformDesc, WrapDesc,
 };
 use hecs::{Entity, EntityBuilder, World};
@@ -59,18 +59,10 @@ pub fn spawn(desc: &SceneDesc) -> Result<Spawned, Vec<Diagnostic>> {
         }
         // The entity was spawned above, so the only error, "no such entity", cannot happen.
         let _ = world.insert(entities[i], components.build());
-        if let Some(id) = meshes[i] {
-            let textured = entity
-                .material
-                .map(|m| is_textured(&desc.materials[m].material));
-            check_uv(
-                desc,
-                i,
-                textured,
-                assets.mesh(id),
-                &mut warnings,
-                &mut errors,
-            );
+        let found = meshes[i].and_then(|id| missing_uv(desc, i, assets.mesh(id)));
+        match found {
+            Some(error) if error.severity == Severity::Error => errors.push(error),
+            found => warnings.extend(found),
         }
     }
     if let Some(camera) = &desc.camera {
@@ -221,44 +213,34 @@ fn is_textured(material: &MaterialDesc) -> bool {
     matches!(color, ColorDesc::Image { .. })
 }
 
-/// Texture coordinates where they are needed: `textured` says so of the entity's material, if it has one.
-fn check_uv(
-    desc: &SceneDesc,
-    entity: usize,
-    textured: Option<bool>,
-    mesh: &Mesh,
-    warnings: &mut Vec<Diagnostic>,
-    errors: &mut Vec<Diagnostic>,
-) {
+/// What there is to say about a textured mesh whose file has no texture coordinates: an error where the scene's own
+/// material is textured, a warning where the file's is.
+fn missing_uv(desc: &SceneDesc, entity: usize, mesh: &Mesh) -> Option<Diagnostic> {
     if mesh.uvs.iter().any(Option::is_some) {
-        return;
+        return None;
     }
+    let Placed { value, at, len } = desc.entities.get(entity)?;
     let file = mesh.path.display();
-    let place = |diagnostic: Diagnostic, component| {
-        let whole = (desc.entities[entity].at, desc.entities[entity].len);
-        let (at, len) = desc.place(entity, component).unwrap_or(whole);
-        diagnostic.in_file(&desc.file).at(&desc.source, at, len)
+    let (diagnostic, component) = match value.material.and_then(|m| desc.materials.get(m)) {
+        Some(named) if is_textured(&named.material) => {
+            let says = format!("this material is textured, but {file} has no texture coordinates");
+            let error = Diagnostic::error(codes::NO_UV, says)
+                .hint("give it a material of one colour, or add vt lines to the file");
+            (error, "material")
+        }
+        Some(_) => return None,
+        None => {
+            let own = mesh.materials.iter().find(|m| m.texture.is_some())?;
+            let says = format!(
+                "the material \"{}\" of {file} is textured, but the file has no texture \
+                 coordinates: one texel colours it",
+                own.name
+            );
+            (Diagnostic::warning(codes::FILE_WITHOUT_UV, says), "shape")
+        }
     };
-    if textured == Some(true) {
-        let says = format!("this material is textured, but {file} has no texture coordinates");
-        let error = Diagnostic::error(codes::NO_UV, says)
-            .hint("give it a material of one colour, or add vt lines to the file");
-        errors.push(place(error, "material"));
-    }
-    if let (None, Some(m)) = (
-        textured,
-        mesh.materials.iter().find(|m| m.texture.is_some()),
-    ) {
-        let says = format!(
-            "the material \"{}\" of {file} is textured, but the file has no texture coordinates: \
-             one texel colours it",
-            m.name
-        );
-        warnings.push(place(
-            Diagnostic::warning(codes::FILE_WITHOUT_UV, says),
-            "shape",
-        ));
-    }
+    let (at, len) = desc.place(entity, component).unwrap_or((*at, *len));
+    Some(diagnostic.in_file(&desc.file).at(&desc.source, at, len))
 }
 
 /// Entities whose composed place or size is not finite.
