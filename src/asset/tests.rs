@@ -1,7 +1,10 @@
 //! Each defect of files in the wild, and of the parser, as a tiny file.
 
+mod damage;
+mod images;
+
 use super::*;
-use crate::diag::{Diagnostic, Severity};
+use crate::diag::Diagnostic;
 use std::fs;
 use std::path::Path;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -425,74 +428,6 @@ fn texture_lines_have_options_and_spaces() {
 }
 
 #[test]
-fn images_become_eight_bit_rgb() {
-    use png::{BitDepth::*, ColorType::*};
-    for (bytes, texels) in [
-        (
-            png(Rgb, Eight, 2, &[1, 2, 3, 4, 5, 6]),
-            vec![1, 2, 3, 4, 5, 6],
-        ),
-        (png(Rgba, Eight, 1, &[9, 8, 7, 0]), vec![9, 8, 7]),
-        (
-            png(Grayscale, Eight, 2, &[7, 200]),
-            vec![7, 7, 7, 200, 200, 200],
-        ),
-        (
-            png(Grayscale, Sixteen, 3, &[0, 128, 0, 129, 255, 255]),
-            vec![0, 0, 0, 1, 1, 1, 255, 255, 255],
-        ),
-    ] {
-        let folder = Folder::of(&[("t.jpg", &bytes)]);
-        let mut loader = Loader::new();
-        let id = loader.texture(&folder.0.join("t.jpg")).expect("a texture");
-        let store = loader.finish();
-        let texture = store.texture(id);
-        assert_eq!(
-            (texture.width as usize, texture.height),
-            (texels.len() / 3, 1)
-        );
-        assert_eq!(texture.texels[..], texels[..]);
-    }
-}
-
-#[test]
-fn images_that_cannot_be_used_say_why() {
-    let good = png(png::ColorType::Rgb, png::BitDepth::Eight, 1, &[1, 2, 3]);
-    let mut huge = good.clone();
-    huge[16..24].copy_from_slice(&[0, 1, 0, 0, 0, 1, 0, 0]);
-    let crc = crc32(&huge[12..29]);
-    huge[29..33].copy_from_slice(&crc.to_be_bytes());
-    for (bytes, code) in [
-        (&good[..good.len() - 20], "E108"),
-        (&good[..20], "E108"),
-        (&huge[..], "E109"),
-        (b"#?RADIANCE\n", "E107"),
-        (b"GIF89a", "E107"),
-        (b"", "E107"),
-    ] {
-        let folder = Folder::of(&[("t.png", bytes)]);
-        let error = Loader::new()
-            .texture(&folder.0.join("t.png"))
-            .expect_err("an error");
-        assert_eq!(error.code, code, "{error}");
-        assert!(error.file.is_some_and(|file| file.ends_with("t.png")));
-    }
-}
-
-/// The checksum of PNG chunks (ISO 3309), bit by bit.
-fn crc32(bytes: &[u8]) -> u32 {
-    !bytes.iter().fold(u32::MAX, |crc, &byte| {
-        (0..8).fold(crc ^ u32::from(byte), |c, _| {
-            if c & 1 == 1 {
-                (c >> 1) ^ 0xEDB8_8320
-            } else {
-                c >> 1
-            }
-        })
-    })
-}
-
-#[test]
 fn a_file_is_read_once_and_the_hash_knows_content_and_order_only() {
     let obj = format!("{TRIANGLE}f 1 2 3");
     let other = format!("{TRIANGLE}f 3 2 1");
@@ -511,85 +446,4 @@ fn a_file_is_read_once_and_the_hash_knows_content_and_order_only() {
     assert_eq!(first, hash([("c.obj", &obj), ("d.obj", &other)]));
     assert_ne!(first, hash([("a.obj", &other), ("b.obj", &obj)]));
     assert_ne!(AssetStore::default().hash(), first);
-}
-
-/// SplitMix64 (Steele, Lea and Flood 2014).
-fn next(state: &mut u64) -> u64 {
-    *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-    let mut z = *state;
-    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    z ^ (z >> 31)
-}
-
-#[test]
-fn no_damage_to_a_file_is_a_panic() {
-    let obj = format!(
-        "mtllib m.mtl\n{SQUARE}vt 0 0\nvt 1 0.5\nvn 0 0 1\nusemtl a\nf 1/1/1 2/2/1 3/1/1 4/2/1\nf -1 -2 -3 -4 1\nusemtl b\nf 1//1 2//1 \\\n3//1\n"
-    );
-    let mtl = "newmtl a\nKd 0.5 0.5 0.5\nmap_Kd -s 1 1 1 t.png\nnewmtl b\nKe 1 2 3\nd 0.5\n";
-    let pieces: [&[u8]; 16] = [
-        b"-", b"/", b"\\\n", b"#", b" ", b"\n", b"0", b"9", b"nan", b"1e999", b"\xFF", b"\0",
-        b"f ", b"v ", b"usemtl ", b"\"",
-    ];
-    let folder = Folder::of(&[]);
-    let (mut state, mut loaded, mut refused) = (1, 0, 0);
-    for _ in 0..5000 {
-        let mut texts = [obj.clone().into_bytes(), mtl.as_bytes().to_vec()];
-        for _ in 0..=next(&mut state) % 3 {
-            let text = &mut texts[(next(&mut state) % 4 == 0) as usize];
-            let at = next(&mut state) as usize % text.len();
-            let piece = pieces[next(&mut state) as usize % pieces.len()];
-            match next(&mut state) % 3 {
-                0 => drop(text.splice(at..at, piece.iter().copied())),
-                1 => drop(text.remove(at)),
-                _ => text[at] = piece[0],
-            }
-        }
-        fs::write(folder.0.join("a.obj"), &texts[0]).expect("a file");
-        fs::write(folder.0.join("m.mtl"), &texts[1]).expect("a file");
-        match folder.load("a.obj").0 {
-            Ok(mesh) => {
-                loaded += 1;
-                check_shape(&mesh);
-            }
-            Err(errors) => {
-                refused += 1;
-                assert!(
-                    errors.iter().all(|e| e.severity == Severity::Error
-                        && e.file.is_some()
-                        && e.code != "E110"),
-                    "{errors:?}"
-                );
-            }
-        }
-    }
-    assert!(
-        loaded > 500 && refused > 500,
-        "{loaded} loaded, {refused} refused"
-    );
-}
-
-/// What [`Mesh`] promises of its arrays.
-fn check_shape(mesh: &Mesh) {
-    let corners = 3 * mesh.triangle_count();
-    assert_eq!(
-        (mesh.corners.len(), mesh.material.len()),
-        (corners, corners / 3)
-    );
-    assert!(mesh.uvs.is_empty() || mesh.uvs.len() == corners);
-    assert!(mesh.normals.is_empty() || mesh.normals.len() == corners);
-    assert!(
-        mesh.corners
-            .iter()
-            .all(|&c| mesh.positions[c as usize].is_finite())
-    );
-    assert!(
-        mesh.material
-            .iter()
-            .flatten()
-            .all(|&m| (m as usize) < mesh.materials.len())
-    );
-    let smooth = normals::smooth(mesh, 60.0);
-    assert!(smooth.len() == corners && smooth.iter().all(|n| (n.length() - 1.0).abs() < 1e-12));
 }

@@ -3,7 +3,7 @@
 use crate::math::{DVec2, DVec3};
 
 /// A polygon that needs ear clipping may have this many corners: clipping takes time in the square of their number.
-pub(super) const MAX_CONCAVE_CORNERS: usize = 10_000;
+pub(super) const MAX_CONCAVE_CORNERS: usize = 4_000;
 
 /// Why a polygon was not triangulated as it stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,0 +1,72 @@
+//! Images as textures.
+
+use super::super::*;
+use super::{Folder, png};
+
+#[test]
+fn images_become_eight_bit_rgb() {
+    use png::{BitDepth::*, ColorType::*};
+    for (bytes, texels) in [
+        (
+            png(Rgb, Eight, 2, &[1, 2, 3, 4, 5, 6]),
+            vec![1, 2, 3, 4, 5, 6],
+        ),
+        (png(Rgba, Eight, 1, &[9, 8, 7, 0]), vec![9, 8, 7]),
+        (
+            png(Grayscale, Eight, 2, &[7, 200]),
+            vec![7, 7, 7, 200, 200, 200],
+        ),
+        (
+            png(Grayscale, Sixteen, 3, &[0, 128, 0, 129, 255, 255]),
+            vec![0, 0, 0, 1, 1, 1, 255, 255, 255],
+        ),
+    ] {
+        let folder = Folder::of(&[("t.jpg", &bytes)]);
+        let mut loader = Loader::new();
+        let id = loader.texture(&folder.0.join("t.jpg")).expect("a texture");
+        let store = loader.finish();
+        let texture = store.texture(id);
+        assert_eq!(
+            (texture.width as usize, texture.height),
+            (texels.len() / 3, 1)
+        );
+        assert_eq!(texture.texels[..], texels[..]);
+    }
+}
+
+#[test]
+fn images_that_cannot_be_used_say_why() {
+    let good = png(png::ColorType::Rgb, png::BitDepth::Eight, 1, &[1, 2, 3]);
+    let mut huge = good.clone();
+    huge[16..24].copy_from_slice(&[0, 1, 0, 0, 0, 1, 0, 0]);
+    let crc = crc32(&huge[12..29]);
+    huge[29..33].copy_from_slice(&crc.to_be_bytes());
+    for (bytes, code) in [
+        (&good[..good.len() - 20], "E108"),
+        (&good[..20], "E108"),
+        (&huge[..], "E109"),
+        (b"#?RADIANCE\n", "E107"),
+        (b"GIF89a", "E107"),
+        (b"", "E107"),
+    ] {
+        let folder = Folder::of(&[("t.png", bytes)]);
+        let error = Loader::new()
+            .texture(&folder.0.join("t.png"))
+            .expect_err("an error");
+        assert_eq!(error.code, code, "{error}");
+        assert!(error.file.is_some_and(|file| file.ends_with("t.png")));
+    }
+}
+
+/// The checksum of PNG chunks (ISO 3309), bit by bit.
+fn crc32(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(u32::MAX, |crc, &byte| {
+        (0..8).fold(crc ^ u32::from(byte), |c, _| {
+            if c & 1 == 1 {
+                (c >> 1) ^ 0xEDB8_8320
+            } else {
+                c >> 1
+            }
+        })
+    })
+}
