@@ -8,7 +8,9 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 /// Files that are refused, with the code: broken, or without any face.
-const REFUSED: [(&str, &str); 5] = [
+const REFUSED: [(&str, &str); 6] = [
+    // Its only triangle has no area: its corners lie on a line.
+    ("obj/assimp/number_formats.obj", "E102"),
     ("obj/tinyobj/invalid-relative-vertex-index.obj", "E103"),
     ("obj/tinyobj/issue-140-zero-face-idx.obj", "E103"),
     ("obj/tinyobj/line-prim.obj", "E102"),
@@ -21,6 +23,14 @@ const DROPPED: [(&str, u64); 3] = [
     ("obj/assimp/box_longline.obj", 154),
     ("obj/assimp/spider.obj", 56),
     ("obj/trimesh/capsule.obj", 200),
+];
+
+/// Files whose box the other reader gives without the ceiling, at y = 548.8, that faces of the file use.
+const OTHER_BOX: [&str; 4] = [
+    "obj/tinyobj/cornell_box.obj",
+    "obj/tinyobj/cornell_box_multimaterial.obj",
+    "obj/tinyobj/missing_material_file.obj",
+    "obj/tinyobj/no_material.obj",
 ];
 
 /// The other reader's boxes may have passed through f32.
@@ -82,7 +92,12 @@ fn compare(name: &str, path: &Path, expected: &Value) -> Result<(), String> {
             expected["uv_tris"]
         ));
     }
-    compare_box(mesh, expected)
+    let same = compare_box(mesh, expected);
+    match OTHER_BOX.contains(&name) {
+        true if same.is_ok() => Err("the boxes agree after all".into()),
+        true => Ok(()),
+        false => same,
+    }
 }
 
 fn is_error(error: &luxel::diag::Diagnostic, code: &str, path: &Path) -> bool {

@@ -30,6 +30,9 @@ impl Source<'_> {
     }
 }
 
+/// The materials of a mesh, and the index of one for each `usemtl` line.
+type Resolved = (Vec<MeshMaterial>, Vec<Option<u32>>);
+
 /// The material libraries of a mesh.
 #[derive(Default)]
 pub(super) struct Libraries {
@@ -100,7 +103,7 @@ impl Loader {
         source: &Source<'_>,
         scan: &Scan,
         libraries: &Libraries,
-    ) -> Result<(Vec<MeshMaterial>, Vec<Option<u32>>), Vec<Diagnostic>> {
+    ) -> Result<Resolved, Vec<Diagnostic>> {
         let mut used = vec![false; scan.uses.len()];
         for face in &scan.faces {
             if let Some(line) = face.used {

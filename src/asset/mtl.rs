@@ -72,11 +72,11 @@ pub(super) fn read(source: &str) -> Result<Vec<Definition>, Vec<Diagnostic>> {
     for line in Lines::of(source) {
         if line.keyword == "newmtl" {
             definitions.push(Definition::new(&line));
-        } else if let Some(definition) = definitions.last_mut() {
-            if let Err(says) = definition.line(&line) {
-                let error = Diagnostic::error(codes::BAD_MATERIAL, says);
-                errors.push(at_line(error, source, line.at));
-            }
+        } else if let Some(definition) = definitions.last_mut()
+            && let Err(says) = definition.line(&line)
+        {
+            let error = Diagnostic::error(codes::BAD_MATERIAL, says);
+            errors.push(at_line(error, source, line.at));
         }
     }
     if errors.is_empty() {
