@@ -32,7 +32,7 @@ fn no_damage_to_a_file_is_a_panic() {
     for round in 0..5000 {
         let mut texts = [obj.clone().into_bytes(), mtl.as_bytes().to_vec()];
         for _ in 0..=next(&mut state) % 3 {
-            let text = &mut texts[(next(&mut state) % 4 == 0) as usize];
+            let text = &mut texts[usize::from(next(&mut state).is_multiple_of(4))];
             let at = next(&mut state) as usize % text.len();
             let piece = pieces[next(&mut state) as usize % pieces.len()];
             match next(&mut state) % 3 {
