@@ -1,0 +1,120 @@
+//! The renderer under test, from the text of a scene to sums; and the files that the tests' scenes name.
+
+use crate::reference::{self, Estimator};
+use crate::stats::Picture;
+use luxel::flat::FlatScene;
+use luxel::scene::SceneDesc;
+use luxel::trace::{Rect, Sampler, TileSums, TraceOptions, Tracer};
+use std::path::PathBuf;
+
+/// A scene text in a folder of its own under the build's scratch space.
+pub(crate) struct Stage {
+    folder: PathBuf,
+    text: String,
+}
+
+/// Independent samples: their variance is what the statistics take it for.
+pub(crate) fn options(max_bounces: u32) -> TraceOptions {
+    TraceOptions {
+        max_bounces,
+        sampler: Sampler::Independent,
+        ..TraceOptions::default()
+    }
+}
+
+impl Stage {
+    /// `name` must be the test's own: tests run side by side.
+    pub(crate) fn new(name: &str) -> Stage {
+        let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+        std::fs::create_dir_all(&folder).expect("a scratch folder");
+        Stage {
+            folder,
+            text: String::new(),
+        }
+    }
+
+    /// Sets the scene; `body` is what stands inside `Scene( .. )` after the version.
+    pub(crate) fn scene(mut self, body: &str) -> Stage {
+        self.text = format!("Scene(version: 1, {body})");
+        self
+    }
+
+    /// Writes a file that the scene names.
+    pub(crate) fn file(self, name: &str, text: &str) -> Stage {
+        std::fs::write(self.folder.join(name), text).expect("a scratch file");
+        self
+    }
+
+    /// Writes a PNG of sRGB bytes that the scene names.
+    pub(crate) fn png(self, name: &str, rgb: &[u8], width: u32, height: u32) -> Stage {
+        image::save_buffer(
+            self.folder.join(name),
+            rgb,
+            width,
+            height,
+            image::ExtendedColorType::Rgb8,
+        )
+        .expect("a scratch picture");
+        self
+    }
+
+    /// As luxel reads it.
+    pub(crate) fn describe(&self) -> SceneDesc {
+        match luxel::scene::parse(&self.text, &self.folder.join("scene.ron")) {
+            Ok((desc, _)) => desc,
+            Err(errors) => panic!("{errors:#?}\n{}", self.text),
+        }
+    }
+
+    /// As luxel traces it.
+    pub(crate) fn flat(&self, frame: u32) -> FlatScene {
+        flatten(&self.describe(), frame)
+    }
+
+    /// What luxel makes of all pixels.
+    pub(crate) fn sums(&self, frame: u32, spp: u32, options: &TraceOptions) -> TileSums {
+        trace(&self.flat(frame), spp, options)
+    }
+
+    /// What luxel makes of it, for statistics.
+    pub(crate) fn luxel(&self, frame: u32, spp: u32, options: &TraceOptions) -> Picture {
+        let flat = self.flat(frame);
+        picture(&flat, trace(&flat, spp, options))
+    }
+
+    /// The scene as the reference sees it.
+    pub(crate) fn reference_scene(&self, frame: u32) -> reference::Scene {
+        reference::adapt::scene(&self.describe(), frame)
+    }
+
+    /// What the reference makes of it.
+    pub(crate) fn reference(&self, frame: u32, spp: u32, estimator: Estimator) -> Picture {
+        reference::render(&self.reference_scene(frame), estimator, spp, 7)
+    }
+}
+
+/// The whole picture as one tile.
+pub(crate) fn trace(flat: &FlatScene, spp: u32, options: &TraceOptions) -> TileSums {
+    let rect = Rect {
+        x: 0,
+        y: 0,
+        width: flat.camera.width,
+        height: flat.camera.height,
+    };
+    let mut sums = TileSums::default();
+    Tracer::new(flat, options).trace_tile(rect, 0..spp, &mut sums);
+    let lost: u32 = sums.non_finite.iter().sum();
+    assert_eq!(lost, 0, "samples that are not finite");
+    sums
+}
+
+/// Sums as a picture with variances.
+pub(crate) fn picture(flat: &FlatScene, sums: TileSums) -> Picture {
+    Picture {
+        width: flat.camera.width as usize,
+        height: flat.camera.height as usize,
+        sum: sums.rgb,
+        squares: sums.rgb_squared,
+        count: sums.count.iter().map(|n| f64::from(*n)).collect(),
+    }
+}

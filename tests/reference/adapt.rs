@@ -1,0 +1,218 @@
+//! A scene description to a reference scene: poses, meshes and materials by code of its own.
+//!
+//! Understands what the tests use: a camera at top level, meshes with file normals or `Flat`, materials on the entity.
+
+use super::{
+    Camera, Color, Filter, Image, Kind, Material, Scene, Shape, Surface, Wrap,
+    internal_reflectance, obj,
+};
+use glam::{DMat3, DVec3};
+use luxel::scene::{
+    ColorDesc, EntityDesc, FilterDesc, MaterialDesc, NormalsDesc, RotateDesc, SceneDesc, ShapeDesc,
+    TextureFilterDesc, WrapDesc,
+};
+use std::path::Path;
+use std::rc::Rc;
+
+/// x ↦ linear · x + offset.
+#[derive(Clone, Copy)]
+struct Map {
+    linear: DMat3,
+    offset: DVec3,
+}
+
+impl Map {
+    fn at(&self, p: DVec3) -> DVec3 {
+        self.linear * p + self.offset
+    }
+
+    fn after(&self, inner: &Map) -> Map {
+        Map {
+            linear: self.linear * inner.linear,
+            offset: self.at(inner.offset),
+        }
+    }
+}
+
+/// The scene of a frame.
+pub(crate) fn scene(desc: &SceneDesc, frame: u32) -> Scene {
+    let folder = desc.file.parent().unwrap_or(Path::new(""));
+    let time = f64::from(frame) / desc.animation.fps;
+    let materials: Vec<Rc<Material>> = desc
+        .materials
+        .iter()
+        .map(|m| Rc::new(material(&m.material, folder)))
+        .collect();
+    let plain = Rc::new(Material {
+        kind: Kind::Diffuse,
+        color: Color::Flat(DVec3::splat(0.8)),
+    });
+    let nothing = Rc::new(Material {
+        kind: Kind::Nothing,
+        color: Color::Flat(DVec3::ZERO),
+    });
+    let mut surfaces = Vec::new();
+    for (i, entity) in desc.entities.iter().enumerate() {
+        let entity = &entity.value;
+        let Some(shape) = &entity.shape else { continue };
+        let map = map_of(desc, i, time);
+        let material = match (entity.material, entity.emissive) {
+            (Some(m), _) => &materials[m],
+            (None, Some(_)) => &nothing,
+            (None, None) => &plain,
+        };
+        for shape in shapes(shape, entity, &map, folder) {
+            surfaces.push(Surface {
+                shape,
+                material: Rc::clone(material),
+                emission: DVec3::from(entity.emissive.unwrap_or_default()),
+                entity: i,
+            });
+        }
+    }
+    Scene {
+        surfaces,
+        background: constant(&desc.background),
+        camera: camera(desc),
+    }
+}
+
+fn constant(color: &ColorDesc) -> DVec3 {
+    match color {
+        ColorDesc::Linear(c) => DVec3::from(*c),
+        other => panic!("not a constant: {other:?}"),
+    }
+}
+
+fn color(color: &ColorDesc, folder: &Path) -> Color {
+    let ColorDesc::Image { path, wrap, filter } = color else {
+        return Color::Flat(constant(color));
+    };
+    let file = image::open(folder.join(&path.value)).expect("the texture of a test");
+    let rgb = file.to_rgb8();
+    let mut image = Image::from_srgb(rgb.as_raw(), rgb.width() as usize, rgb.height() as usize);
+    image.wrap = match wrap {
+        WrapDesc::Repeat => Wrap::Repeat,
+        WrapDesc::Mirror => Wrap::Mirror,
+        WrapDesc::Clamp => Wrap::Clamp,
+    };
+    image.bilinear = *filter == TextureFilterDesc::Bilinear;
+    Color::Image(image)
+}
+
+fn material(desc: &MaterialDesc, folder: &Path) -> Material {
+    let (kind, c) = match desc {
+        MaterialDesc::Diffuse { color } => (Kind::Diffuse, color),
+        MaterialDesc::Mirror { color } => (Kind::Mirror, color),
+        MaterialDesc::Glass { ior, color } => (Kind::Glass { ior: *ior }, color),
+        MaterialDesc::Plastic { ior, color } => {
+            let (ior, inner) = (*ior, internal_reflectance(*ior));
+            (Kind::Plastic { ior, inner }, color)
+        }
+        MaterialDesc::Metal { color, .. } => (Kind::Metal, color),
+    };
+    Material {
+        kind,
+        color: color(c, folder),
+    }
+}
+
+/// The matrix that turns by an angle in degrees about an axis (Rodrigues).
+fn turn(axis: DVec3, deg: f64) -> DMat3 {
+    let k = axis.normalize();
+    let (sin, cos) = deg.to_radians().sin_cos();
+    let column = |e: DVec3| e * cos + k.cross(e) * sin + k * (k.dot(e) * (1.0 - cos));
+    DMat3::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z))
+}
+
+fn rotation(rotate: RotateDesc) -> DMat3 {
+    match rotate {
+        RotateDesc::Euler([x, y, z]) => turn(DVec3::Z, z) * turn(DVec3::Y, y) * turn(DVec3::X, x),
+        RotateDesc::AxisAngle { axis, deg } => turn(DVec3::from(axis), deg),
+        RotateDesc::Quat([x, y, z, w]) => {
+            let axis = DVec3::new(x, y, z);
+            if axis == DVec3::ZERO {
+                return DMat3::IDENTITY;
+            }
+            turn(axis, 2.0 * axis.length().atan2(w).to_degrees())
+        }
+    }
+}
+
+/// M = parent · T(p) · Spin · T(−p) · T · R · S.
+fn map_of(desc: &SceneDesc, entity: usize, time: f64) -> Map {
+    let e = &desc.entities[entity].value;
+    let t = &e.transform;
+    let mut map = Map {
+        linear: rotation(t.rotate) * DMat3::from_diagonal(DVec3::from(t.scale)),
+        offset: DVec3::from(t.translate),
+    };
+    if let Some(spin) = &e.spin {
+        let pivot = DVec3::from(spin.pivot.unwrap_or(t.translate));
+        let linear = turn(DVec3::from(spin.axis), spin.deg_per_s * time);
+        let about = Map {
+            linear,
+            offset: pivot - linear * pivot,
+        };
+        map = about.after(&map);
+    }
+    match e.parent {
+        Some(parent) => map_of(desc, parent, time).after(&map),
+        None => map,
+    }
+}
+
+fn shapes(shape: &ShapeDesc, entity: &EntityDesc, map: &Map, folder: &Path) -> Vec<Shape> {
+    match shape {
+        ShapeDesc::Sphere { radius, inverted } => vec![Shape::Sphere {
+            center: map.offset,
+            radius: radius * map.linear.determinant().abs().cbrt(),
+            inverted: *inverted,
+        }],
+        ShapeDesc::Mesh(path) => obj::read(&folder.join(&path.value))
+            .into_iter()
+            .map(|face| triangle(face, entity.normals, map))
+            .collect(),
+    }
+}
+
+/// A mirrored triangle is wound the other way, so that its normal stays outside.
+fn triangle(face: obj::Face, normals: Option<NormalsDesc>, map: &Map) -> Shape {
+    let mirrored = map.linear.determinant() < 0.0;
+    let wind = |[a, b, c]: [DVec3; 3]| if mirrored { [a, c, b] } else { [a, b, c] };
+    let cotransform = map.linear.inverse().transpose();
+    let n = match normals {
+        Some(NormalsDesc::Flat) => None,
+        None | Some(NormalsDesc::File) => face.n,
+        Some(other) => panic!("the reference does not know {other:?}"),
+    };
+    let [a, b, c] = face.uv;
+    Shape::Triangle {
+        p: wind(face.p.map(|p| map.at(p))),
+        n: n.map(|n| wind(n.map(|n| (cotransform * n).normalize()))),
+        uv: if mirrored { [a, c, b] } else { [a, b, c] },
+    }
+}
+
+fn camera(desc: &SceneDesc) -> Camera {
+    let camera = desc.camera.as_ref().expect("a camera at top level");
+    let pose = camera.pose.as_ref().expect("its pose");
+    let eye = DVec3::from(pose.at);
+    let forward = (DVec3::from(pose.look_at) - eye).normalize();
+    let right = forward.cross(DVec3::from(pose.up)).normalize();
+    Camera {
+        eye,
+        right,
+        up: right.cross(forward),
+        forward,
+        slope: (camera.vfov_deg.to_radians() / 2.0).tan(),
+        aperture: camera.aperture_radius,
+        focus: camera.focus_distance,
+        width: desc.render.size.0,
+        height: desc.render.size.1,
+        filter: match desc.render.filter {
+            FilterDesc::Box => Filter::Box,
+            FilterDesc::Gaussian { radius_px } => Filter::Gaussian(radius_px),
+        },
+    }
+}

@@ -1,0 +1,125 @@
+//! The estimator.
+
+use super::shape::{Ray, closest};
+use super::{Random, Scene};
+use crate::stats::Picture;
+use glam::DVec3;
+
+/// What is estimated, and how.
+#[derive(Clone, Copy)]
+pub(crate) struct Estimator {
+    /// Scattering events on a path.
+    pub(crate) max_bounces: u32,
+    /// Next-event estimation by area.
+    pub(crate) lamps: bool,
+}
+
+/// Lamps with their areas: one is chosen uniformly.
+struct Lamps(Vec<(usize, f64)>);
+
+/// Renders `spp` samples of every pixel.
+pub(crate) fn render(scene: &Scene, estimator: Estimator, spp: u32, seed: u64) -> Picture {
+    let lamps = Lamps(
+        scene
+            .surfaces
+            .iter()
+            .enumerate()
+            .filter(|(_, s)| estimator.lamps && s.emission != DVec3::ZERO)
+            .map(|(i, s)| (i, s.shape.area()))
+            .collect(),
+    );
+    let camera = &scene.camera;
+    let mut picture = Picture::new(camera.width as usize, camera.height as usize);
+    let mut random = Random::new(seed);
+    for y in 0..camera.height {
+        for x in 0..camera.width {
+            for _ in 0..spp {
+                let ray = camera.ray(x, y, &mut random);
+                let sample = radiance(scene, &lamps, ray, estimator.max_bounces, &mut random);
+                picture.add(x as usize, y as usize, sample.to_array());
+            }
+        }
+    }
+    picture
+}
+
+fn radiance(
+    scene: &Scene,
+    lamps: &Lamps,
+    mut ray: Ray,
+    max_bounces: u32,
+    random: &mut Random,
+) -> DVec3 {
+    let mut sum = DVec3::ZERO;
+    let mut throughput = DVec3::ONE;
+    // Whether the lamps on the way were already counted by a light sample.
+    let mut counted = false;
+    for bounce in 0..=max_bounces {
+        let Some(hit) = closest(scene, &ray) else {
+            return sum + throughput * scene.background;
+        };
+        let surface = &scene.surfaces[hit.surface];
+        let wo = -ray.dir;
+        if !counted && wo.dot(hit.ng) > 0.0 {
+            sum += throughput * surface.emission;
+        }
+        if bounce == max_bounces {
+            break;
+        }
+        if !lamps.0.is_empty() {
+            let here = |wi| surface.material.smooth(&hit, wo, wi) * wi.dot(hit.ns).abs();
+            let from = (hit.position, hit.surface);
+            sum += throughput * lamps.light(scene, from, here, random);
+        }
+        let Some(next) = surface.material.scatter(&hit, wo, random) else {
+            break;
+        };
+        throughput *= next.weight;
+        if throughput == DVec3::ZERO {
+            break;
+        }
+        counted = !lamps.0.is_empty() && !next.specular;
+        ray = Ray {
+            origin: hit.position,
+            dir: next.dir,
+            from: Some(hit.surface),
+        };
+    }
+    sum
+}
+
+impl Lamps {
+    /// One light sample: f cos(here) · Le cos(there) / r² · area · number of lamps.
+    fn light(
+        &self,
+        scene: &Scene,
+        (position, from): (DVec3, usize),
+        here: impl Fn(DVec3) -> DVec3,
+        random: &mut Random,
+    ) -> DVec3 {
+        let k = (random.unit() * self.0.len() as f64) as usize;
+        let (lamp, area) = self.0[k];
+        let (there, normal) = scene.surfaces[lamp].shape.sample_area(random);
+        let way = there - position;
+        let r2 = way.length_squared();
+        let dir = way / r2.sqrt();
+        let cos_there = -dir.dot(normal);
+        let f_cos = here(dir);
+        if cos_there <= 0.0 || f_cos == DVec3::ZERO {
+            return DVec3::ZERO;
+        }
+        let ray = Ray {
+            origin: position,
+            dir,
+            from: Some(from),
+        };
+        // The lamp's front is what the ray meets first, or something else is in the way.
+        let seen = closest(scene, &ray)
+            .is_some_and(|h| h.surface == lamp && (h.t * h.t / r2 - 1.0).abs() < 1e-6);
+        if !seen {
+            return DVec3::ZERO;
+        }
+        let share = area * self.0.len() as f64;
+        f_cos * scene.surfaces[lamp].emission * (cos_there / r2 * share)
+    }
+}
