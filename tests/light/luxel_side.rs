@@ -2,7 +2,9 @@
 
 use crate::reference::{self, Estimator};
 use crate::stats::Picture;
+use luxel::build::Accel;
 use luxel::flat::FlatScene;
+use luxel::render::{Renderer, Settings};
 use luxel::scene::SceneDesc;
 use luxel::trace::{Rect, Sampler, TileSums, TraceOptions, Tracer};
 use std::path::PathBuf;
@@ -67,19 +69,20 @@ impl Stage {
     }
 
     /// As luxel traces it.
-    pub(crate) fn flat(&self, frame: u32) -> FlatScene {
-        flatten(&self.describe(), frame)
+    pub(crate) fn flat(&self, frame: u32, options: &TraceOptions) -> FlatScene {
+        flatten(&self.describe(), frame, options)
     }
 
     /// What luxel makes of all pixels.
     pub(crate) fn sums(&self, frame: u32, spp: u32, options: &TraceOptions) -> TileSums {
-        trace(&self.flat(frame), spp, options)
+        trace(&self.flat(frame, options), spp, options)
     }
 
     /// What luxel makes of it, for statistics.
     pub(crate) fn luxel(&self, frame: u32, spp: u32, options: &TraceOptions) -> Picture {
-        let flat = self.flat(frame);
-        picture(&flat, trace(&flat, spp, options))
+        let flat = self.flat(frame, options);
+        let sums = trace(&flat, spp, options);
+        picture(&flat, sums)
     }
 
     /// The scene as the reference sees it.
@@ -91,6 +94,26 @@ impl Stage {
     pub(crate) fn reference(&self, frame: u32, spp: u32, estimator: Estimator) -> Picture {
         reference::render(&self.reference_scene(frame), estimator, spp, 7)
     }
+}
+
+/// Spawns, poses and builds a frame.
+fn flatten(desc: &SceneDesc, frame: u32, options: &TraceOptions) -> FlatScene {
+    let spawned = match luxel::world::spawn(desc) {
+        Ok(spawned) => spawned,
+        Err(errors) => panic!("{errors:#?}"),
+    };
+    let settings = Settings {
+        size: desc.render.size,
+        spp: desc.render.spp,
+        time: None,
+        threads: Some(1),
+        tile: Settings::DEFAULT_TILE,
+        accel: Accel::Bvh,
+        trace: *options,
+    };
+    let mut renderer =
+        Renderer::new(desc, spawned.world, &spawned.assets, settings).expect("a thread");
+    renderer.build(frame).0
 }
 
 /// The whole picture as one tile.

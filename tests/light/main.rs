@@ -1,11 +1,21 @@
 //! Light: luxel against closed forms, furnaces and an independent f64 reference tracer.
 //!
 //! `cargo test --release --test light` is the quick part. The long part compares with other renderers' pictures:
-//! `LUXEL_DATA=… cargo test --release --test light -- --ignored --nocapture`.
+//! `LUXEL_DATA=… cargo test --release --test light peers -- --ignored --nocapture`.
 
 #[path = "../reference/mod.rs"]
 mod reference;
 
+mod agreement;
 mod closed;
-mod stats;
+mod estimators;
+mod furnace;
+mod luxel_side;
+mod npy;
+mod objs;
+mod oracle_uv;
+mod peers;
+mod radiance;
 mod self_check;
+mod stats;
+mod textures;

@@ -130,9 +130,8 @@ pub(crate) fn assert_agree(name: &str, found: &Picture, truth: &Picture, detecta
         let (a, b) = (found.whole(c), truth.whole(c));
         assert_mean(&format!("{name} {channel}"), a, b, detectable_at_most);
         for quarter in 0..4 {
-            let inside = |x: usize, y: usize| {
-                (2 * x / truth.width) + 2 * (2 * y / truth.height) == quarter
-            };
+            let inside =
+                |x: usize, y: usize| (2 * x / truth.width) + 2 * (2 * y / truth.height) == quarter;
             let (z, _) = found.mean(c, inside).against(truth.mean(c, inside));
             assert!(z < Z_BAR, "{name} {channel}, quarter {quarter}: z {z:.2}");
         }

@@ -32,10 +32,7 @@ impl Camera {
             Filter::Box => DVec2::new(random.unit() - 0.5, random.unit() - 0.5),
             Filter::Gaussian(radius) => gaussian(radius, random),
         };
-        let sharp = self.through(
-            f64::from(x) + 0.5 + offset.x,
-            f64::from(y) + 0.5 + offset.y,
-        );
+        let sharp = self.through(f64::from(x) + 0.5 + offset.x, f64::from(y) + 0.5 + offset.y);
         if self.aperture == 0.0 {
             return sharp;
         }

@@ -7,7 +7,6 @@
 //! Estimator: plain path tracing, no roulette. Next-event estimation is an option for small lamps, and then by points
 //! uniform on the lamp's *area* with cos/r², where luxel samples solid angles.
 
-#[cfg(any())]
 pub(crate) mod adapt;
 mod bsdf;
 mod camera;
@@ -19,7 +18,7 @@ mod trace;
 pub(crate) use bsdf::{dielectric, internal_reflectance};
 pub(crate) use camera::{Camera, Filter};
 pub(crate) use random::Random;
-pub(crate) use shape::{Hit, Shape};
+pub(crate) use shape::{Hit, Shape, closest};
 pub(crate) use trace::{Estimator, render};
 
 use glam::{DVec2, DVec3};
