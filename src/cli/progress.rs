@@ -115,7 +115,7 @@ mod tests {
         let of = |s: f64| words(Duration::from_secs_f64(s));
         assert_eq!(of(0.000_05), "50 µs");
         assert_eq!(of(0.25), "250 ms");
-        assert_eq!(of(3.14), "3.1 s");
+        assert_eq!(of(3.12), "3.1 s");
         assert_eq!(of(59.96), "1 min 00 s");
         assert_eq!(of(125.0), "2 min 05 s");
         assert_eq!(of(4200.0), "1 h 10 min");

@@ -81,7 +81,8 @@ mod tests {
 
     #[test]
     fn a_deadline_in_the_past_leaves_the_first_pass() {
-        assert_eq!(all(Passes::new(64, Some(Instant::now()))), [0..1]);
+        let passes = all(Passes::new(64, Some(Instant::now())));
+        assert_eq!((passes.len(), passes[0].end), (1, 1));
     }
 
     #[test]
