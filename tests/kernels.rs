@@ -188,7 +188,7 @@ fn every_instruction_set_and_every_tree_gives_the_same_bits() {
     for (i, h) in reference.iter().enumerate() {
         let [t, u, v, .., err] = h.map(f32::from_bits);
         assert!(
-            t > 0.0 && u >= 0.0 && v >= 0.0 && err >= 0.0 && err < 1.0,
+            t > 0.0 && u >= 0.0 && v >= 0.0 && (0.0..1.0).contains(&err),
             "ray {i}: {h:?}"
         );
         let limit = rays.t_max[i];

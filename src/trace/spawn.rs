@@ -2,6 +2,10 @@
 //!
 //! [`super::Hits::err`] bounds what these functions compute, so surfaces and the next rays are made with them alone.
 //! Deliberately absent: any absolute epsilon.
+#![allow(
+    clippy::needless_range_loop,
+    reason = "axes are numbers here: several arrays are indexed by one"
+)]
 
 use crate::flat::{BLOCK, Instance, Triangles};
 

@@ -1,4 +1,8 @@
 //! Linearize: a grown tree becomes an array of nodes, depth first, and blocks in leaf order.
+#![allow(
+    clippy::needless_range_loop,
+    reason = "axes are numbers here: several arrays are indexed by one"
+)]
 
 use super::split::{self, NODE_COST};
 use super::tree::{BuildNode, Item, Kind, Shape};

@@ -74,15 +74,10 @@ pub fn build(p: &Primitives, accel: Accel) -> Built {
     let mut items = items_of(p);
     let root = match accel {
         Accel::Bvh => tree::grow(&mut items),
-        Accel::Brute => tree::over_kinds(&items, &[0..p.triangles.len()]),
-        Accel::Box if p.groups.is_empty() => tree::over_kinds(&items, &[0..p.triangles.len()]),
-        Accel::Box => {
-            let groups: Vec<_> = p
-                .groups
-                .iter()
-                .map(|g| g.start as usize..g.end as usize)
-                .collect();
-            tree::over_kinds(&items, &groups)
+        Accel::Box if !p.groups.is_empty() => tree::over_kinds(&items, p.groups),
+        Accel::Brute | Accel::Box => {
+            let all = std::iter::once(0..p.triangles.len() as u32);
+            tree::over_kinds(&items, &all.collect::<Vec<_>>())
         }
     };
     linear::linearize(p, &items, root)

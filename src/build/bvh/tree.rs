@@ -72,12 +72,12 @@ pub(super) fn grow(items: &mut [Item]) -> Option<BuildNode> {
 }
 
 /// A root over one leaf per group of triangles, one of all spheres and one of all instances, in the given order.
-pub(super) fn over_kinds(items: &[Item], groups: &[Range<usize>]) -> Option<BuildNode> {
+pub(super) fn over_kinds(items: &[Item], groups: &[Range<u32>]) -> Option<BuildNode> {
     let triangles = items.partition_point(|i| i.kind < Kind::Sphere);
     let spheres = items.partition_point(|i| i.kind < Kind::Instance);
     let mut row: Vec<BuildNode> = groups
         .iter()
-        .cloned()
+        .map(|g| g.start as usize..g.end as usize)
         .chain([triangles..spheres, spheres..items.len()])
         .filter(|range| !range.is_empty())
         .map(|range| BuildNode {

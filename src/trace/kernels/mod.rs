@@ -10,6 +10,10 @@
 //!   never hit.
 //!
 //! Generic over lanes and over what the tree holds, chosen once per batch; see [`entries`] for what runs where.
+#![allow(
+    clippy::needless_range_loop,
+    reason = "axes are numbers here: several arrays are indexed by one"
+)]
 
 mod batch;
 mod bound;
