@@ -548,7 +548,8 @@ fn errors_of_files_come_at_once_with_their_places() {
         (shape: Mesh("missing.obj")),
         (shape: Mesh("broken.obj")),
         (shape: Mesh("bare.obj"), material: "skin"),
-        (shape: Sphere(radius: 1e300), transform: (scale: 1e300)),
+        (parent: "far", shape: Sphere(radius: 1e150), transform: (scale: 1e150)),
+        (name: "far", transform: (scale: 1e150)),
     ])"#;
     let errors = match try_spawn(text) {
         Err(errors) => errors,

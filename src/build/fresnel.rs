@@ -101,7 +101,7 @@ mod tests {
     #[test]
     fn schlick_is_the_integral_of_its_formula() {
         for n in [0.6, 1.0, 1.5] {
-            let k0 = ((n - 1.0) / (n + 1.0) * ((n - 1.0) / (n + 1.0))) as f64;
+            let k0: f64 = (n - 1.0) / (n + 1.0) * ((n - 1.0) / (n + 1.0));
             let steps = 200_000;
             let mean: f64 = (0..steps)
                 .map(|i| {

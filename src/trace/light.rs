@@ -209,7 +209,7 @@ fn sample_triangle(
     let dir = to * (1.0 / distance);
     let radiance = Vec3::from(lights.radiance[i]);
     let pdf = triangle_pdf(distance, -dir.dot(ng), radiance, total);
-    (pdf > 0.0 && pdf.is_finite()).then(|| LightSample {
+    (pdf > 0.0 && pdf.is_finite()).then_some(LightSample {
         dir,
         t_max: distance * SHORT,
         radiance,

@@ -261,7 +261,7 @@ fn follow(wave: &mut Wave, i: usize, local: &Local, s: &Scattered) {
 fn sample_diffuse(local: &Local, u: [f32; 2]) -> Option<Scattered> {
     let dir = cosine_hemisphere(local.ns, u);
     let cos = local.cosine(dir);
-    (cos > 0.0).then(|| Scattered {
+    (cos > 0.0).then_some(Scattered {
         dir,
         weight: local.color,
         pdf: cos * FRAC_1_PI,
@@ -317,7 +317,7 @@ fn sample_plastic(plastic: &Plastic, local: &Local, lobe: f32, u: [f32; 2]) -> O
     let dir = cosine_hemisphere(local.ns, u);
     let cos = local.cosine(dir);
     let weight = plastic.eval_base(cos) / share;
-    (cos > 0.0).then(|| Scattered {
+    (cos > 0.0).then_some(Scattered {
         dir,
         weight,
         pdf: share * cos * FRAC_1_PI,

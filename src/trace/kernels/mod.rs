@@ -9,7 +9,7 @@
 //! - Rays with anything not finite, without direction, or without a positive `t_max` hit nothing. Degenerate triangles are
 //!   never hit.
 //!
-//! Generic over lanes and over what the tree holds, chosen once per batch; see [`entries`] for what runs where.
+//! Generic over lanes and over what the tree holds, chosen once per batch; see `entries` for what runs where.
 #![allow(
     clippy::needless_range_loop,
     reason = "axes are numbers here: several arrays are indexed by one"
