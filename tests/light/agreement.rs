@@ -27,17 +27,17 @@ struct Effort {
 
 /// Under a sky every path finds light.
 const UNDER_SKY: Effort = Effort {
-    luxel: 1_200,
-    reference: 1_200,
+    luxel: 900,
+    reference: 900,
     max_bounces: 6,
     lamps: false,
 };
 
 /// With lamps alone.
 const LAMPLIT: Effort = Effort {
-    luxel: 6_000,
-    reference: 5_000,
-    max_bounces: 4,
+    luxel: 10_000,
+    reference: 10_000,
+    max_bounces: 3,
     lamps: true,
 };
 
@@ -206,8 +206,8 @@ fn a_gaussian_filter() {
             entities: [(shape: Sphere(radius: 0.5), transform: (translate: (0.2, 0.1, 0)), emissive: (radiance: (1, 2, 3)))]"#,
     );
     let effort = Effort {
-        luxel: 20_000,
-        reference: 20_000,
+        luxel: 150_000,
+        reference: 150_000,
         max_bounces: 0,
         lamps: false,
     };

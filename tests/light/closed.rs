@@ -79,5 +79,5 @@ fn check_values() {
         assert!((slab(deg, 1.5) - t).abs() < 1e-6);
     }
     near(blur(0.05, 4.0, 6.5), 0.019_230_769_2);
-    near(internal_reflectance(1.5), 0.596_345_7);
+    near(internal_reflectance(1.5), 0.596_345_76);
 }

@@ -39,15 +39,13 @@ fn compare(inputs: &Path, name: &str, camera: &serde_json::Value) {
         camera["height"].as_u64().expect("a height") as usize,
     );
     assert_eq!(width, height, "hfov is vfov in square pictures alone");
-    let mesh = inputs
-        .join("zoo")
-        .join(camera["file"].as_str().expect("a file"));
-    let vertical = |[x, y, z]: [f64; 3]| format!("({x}, {y}, {z})");
+    let mesh = inputs.join(camera["file"].as_str().expect("a file"));
+    let text = |[x, y, z]: [f64; 3]| format!("({x}, {y}, {z})");
     let stage = Stage::new(&format!("oracle_{name}")).scene(&format!(
         "camera: (at: {}, look_at: {}, vfov_deg: {}), render: (size: ({width}, {height})),
         entities: [(shape: Mesh({:?}))]",
-        vertical(at),
-        vertical(target),
+        text(at),
+        text(target),
         camera["hfov_deg"],
         mesh.to_str().expect("a path in UTF-8")
     ));
