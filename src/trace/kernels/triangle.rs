@@ -30,8 +30,8 @@ struct Edges<L> {
 
 /// Tests the `L::N` triangles from lane `at` on; returns the lanes that hit, in bits from 0 on.
 ///
-/// A hit's t exceeds its own error bound, so that it is above 0 whatever the rounding; it is clamped into the widened slab
-/// interval of the triangle's own box (a candidate whose interval is empty is none), raised to `floor`, and at most `limit`.
+/// A hit's t exceeds its own error bound, so that it is above 0 whatever the rounding, or f64 says that it is above 0; it is
+/// clamped into the widened slab interval of the triangle's own box (a candidate whose interval is empty is none), raised to `floor`, and at most `limit`.
 #[inline(always)]
 pub(super) fn test<L: Lanes>(
     ray: &WalkRay<L>,
@@ -61,8 +61,37 @@ pub(super) fn test<L: Lanes>(
     clamped.store(&mut out.t[at..]);
     (e[1] / det).store(&mut out.u[at..]);
     (e[2] / det).store(&mut out.v[at..]);
-    let counts = bound.lt(t) & zero.lt(clamped) & clamped.le(L::splat(limit));
-    L::bits(inside & own.near.le(own.far) & counts) << at
+    let counts = inside & own.near.le(own.far) & clamped.le(L::splat(limit));
+    let mut hits = L::bits(counts & bound.lt(t) & zero.lt(clamped)) << at;
+    let mut doubtful = L::bits(counts & t.abs().le(bound)) << at;
+    while doubtful != 0 {
+        let lane = doubtful.trailing_zeros() as usize;
+        doubtful &= doubtful - 1;
+        if in_front(ray.origin_dir, block, lane) {
+            out.t[lane] = out.t[lane].max(f32::MIN_POSITIVE);
+            hits |= 1 << lane;
+        }
+    }
+    hits
+}
+
+/// The sign of t in f64, for a t that is smaller than its error: whether the ray goes towards the triangle's plane.
+///
+/// Rejecting every doubtful t would lose the rays that leave a surface close to an edge for the neighbour across it.
+#[inline(always)]
+fn in_front([origin, dir]: [[f32; 3]; 2], block: &TriangleBlock, lane: usize) -> bool {
+    let from = |k: usize, p: [f32; 3]| {
+        [0, 1, 2].map(|axis| f64::from(block.v[k][axis][lane]) - f64::from(p[axis]))
+    };
+    let first = [0, 1, 2].map(|axis| block.v[0][axis][lane]);
+    let [a, b, way] = [from(1, first), from(2, first), from(0, origin)];
+    let normal = [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ];
+    let dot = |p: [f64; 3]| p[0] * normal[0] + p[1] * normal[1] + p[2] * normal[2];
+    dot(way) * dot(dir.map(f64::from)) > 0.0
 }
 
 impl<L: Lanes> Sheared<L> {
