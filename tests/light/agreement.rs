@@ -11,6 +11,8 @@ use crate::stats::assert_agree;
 const DETECTABLE: f64 = 0.005;
 
 const CAMERA: &str = "camera: (at: (0, 1.2, 4), look_at: (0, 0.6, 0), vfov_deg: 40),";
+/// Sees the floor alone, so that no pixel is dark.
+const NIGHT_CAMERA: &str = "camera: (at: (0, 2.6, 2.6), look_at: (0, 0.3, 0), vfov_deg: 30),";
 const SIZE: &str = "render: (size: (16, 16), filter: Box),";
 const SKY: &str = "background: Linear(0.6, 0.8, 1.0),";
 const FLOOR: &str = r#"(shape: Mesh("square.obj"), normals: Flat, material: "floor",
@@ -35,9 +37,9 @@ const UNDER_SKY: Effort = Effort {
 
 /// With lamps alone.
 const LAMPLIT: Effort = Effort {
-    luxel: 10_000,
-    reference: 10_000,
-    max_bounces: 3,
+    luxel: 16_000,
+    reference: 16_000,
+    max_bounces: 2,
     lamps: true,
 };
 
@@ -78,7 +80,7 @@ fn ball(name: &str, material: &str) {
 /// Dark but for lamps: a floor, and `entities`.
 fn at_night(name: &str, entities: &str, effort: &Effort) {
     let stage = stage(name).scene(&format!(
-        "{CAMERA} {SIZE} materials: {{{FLOOR_MATERIAL}}}, entities: [{FLOOR} {entities}]"
+        "{NIGHT_CAMERA} {SIZE} materials: {{{FLOOR_MATERIAL}}}, entities: [{FLOOR} {entities}]"
     ));
     agree(name, &stage, 0, effort);
 }
@@ -246,17 +248,17 @@ fn an_emitting_mesh() {
 
 #[test]
 fn two_lamps() {
-    let lamps = r#"(shape: Sphere(radius: 0.5), transform: (translate: (-1, 1.8, 0)), emissive: (radiance: (5, 2, 1))),
-        (shape: Sphere(radius: 0.3), transform: (translate: (1, 0.9, 0.4)), material: "floor", emissive: (radiance: (1, 2, 6))),"#;
+    let lamps = r#"(shape: Sphere(radius: 0.5), transform: (translate: (-1, 1.8, 0)), emissive: (radiance: (4, 3, 2))),
+        (shape: Sphere(radius: 0.3), transform: (translate: (1, 0.9, 0.4)), material: "floor", emissive: (radiance: (2, 3, 4))),"#;
     at_night("two_lamps", lamps, &LAMPLIT);
 }
 
 #[test]
 fn plastic_under_a_lamp() {
     let stage = stage("plastic_lamp").scene(&format!(
-        r#"{CAMERA} {SIZE} materials: {{{FLOOR_MATERIAL} "coat": Plastic(color: Linear(0.8, 0.4, 0.2), ior: 1.6)}},
+        r#"{NIGHT_CAMERA} {SIZE} materials: {{{FLOOR_MATERIAL} "coat": Plastic(color: Linear(0.8, 0.4, 0.2), ior: 1.6)}},
             entities: [{FLOOR} (shape: Sphere(radius: 0.7), transform: (translate: (0, 0.7, 0)), material: "coat"),
-                (shape: Sphere(radius: 0.6), transform: (translate: (-1.2, 2, 1)), emissive: (radiance: (3, 3, 3)))]"#
+                (shape: Sphere(radius: 0.9), transform: (translate: (-1.6, 2, 0)), emissive: (radiance: (3, 3, 3)))]"#
     ));
     agree("plastic under a lamp", &stage, 0, &LAMPLIT);
 }

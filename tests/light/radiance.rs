@@ -16,8 +16,7 @@ const ESTIMATORS: [(&str, bool, bool); 3] = [
     ("mis", true, true),
 ];
 
-/// Renders by each estimator and compares the mean with `truth`. `spp` is of 64 pixels by chance; light samples need
-/// fewer.
+/// Renders by each estimator and compares the mean with `truth`. `spp` is by chance and with light samples.
 fn by_all_estimators(name: &str, stage: &Stage, max_bounces: u32, spp: [u32; 2], truth: f64) {
     for (kind, nee, mis) in ESTIMATORS {
         let options = TraceOptions {
@@ -77,7 +76,7 @@ fn a_sphere_lights_a_plane() {
                 triple(lamp)
             ));
         let truth = 2.0 * 0.5 * closed::sphere_light(theta, s);
-        let spp = [[20_000, 2_000], [6_000, 4_000], [250_000, 30_000]][k];
+        let spp = [[20_000, 1_500], [7_000, 4_500], [300_000, 30_000]][k];
         by_all_estimators(&format!("sphere light {k}"), &stage, 1, spp, truth);
     }
 }
@@ -123,7 +122,7 @@ fn an_emitting_room_multiplies_its_light() {
         spot([0.3, 0.2, 0.1], [1.0, 0.7, 0.2])
     ));
     let truth = closed::furnace(0.5, 7);
-    by_all_estimators("emitting room", &stage, 7, [64, 4_000], truth);
+    by_all_estimators("emitting room", &stage, 7, [9_000, 9_000], truth);
 }
 
 #[test]
