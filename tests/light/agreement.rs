@@ -248,9 +248,13 @@ fn an_emitting_mesh() {
 
 #[test]
 fn two_lamps() {
-    let lamps = r#"(shape: Sphere(radius: 0.5), transform: (translate: (-1, 1.8, 0)), emissive: (radiance: (4, 3, 2))),
-        (shape: Sphere(radius: 0.3), transform: (translate: (1, 0.9, 0.4)), material: "floor", emissive: (radiance: (2, 3, 4))),"#;
-    at_night("two_lamps", lamps, &LAMPLIT);
+    let lamps = r#"(shape: Sphere(radius: 0.5), transform: (translate: (-1, 2.2, 0)), emissive: (radiance: (4, 3, 2))),
+        (shape: Sphere(radius: 0.3), transform: (translate: (1, 1.6, 0.2)), material: "floor", emissive: (radiance: (2, 3, 4))),"#;
+    let effort = Effort {
+        reference: 24_000,
+        ..LAMPLIT
+    };
+    at_night("two_lamps", lamps, &effort);
 }
 
 #[test]
@@ -258,9 +262,15 @@ fn plastic_under_a_lamp() {
     let stage = stage("plastic_lamp").scene(&format!(
         r#"{NIGHT_CAMERA} {SIZE} materials: {{{FLOOR_MATERIAL} "coat": Plastic(color: Linear(0.8, 0.4, 0.2), ior: 1.6)}},
             entities: [{FLOOR} (shape: Sphere(radius: 0.7), transform: (translate: (0, 0.7, 0)), material: "coat"),
-                (shape: Sphere(radius: 0.9), transform: (translate: (-1.6, 2, 0)), emissive: (radiance: (3, 3, 3)))]"#
+                (shape: Sphere(radius: 0.9), transform: (translate: (-2, 3.4, 0.5)), emissive: (radiance: (3, 3, 3)))]"#
     ));
-    agree("plastic under a lamp", &stage, 0, &LAMPLIT);
+    // Direct light alone: the coat's caustics on the floor are too rare for the reference.
+    let effort = Effort {
+        max_bounces: 1,
+        reference: 32_000,
+        ..LAMPLIT
+    };
+    agree("plastic under a lamp", &stage, 0, &effort);
 }
 
 #[test]
