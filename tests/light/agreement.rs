@@ -267,8 +267,8 @@ fn plastic_under_a_lamp() {
     // Direct light alone: the coat's caustics on the floor are too rare for the reference.
     let effort = Effort {
         max_bounces: 1,
-        luxel: 30_000,
-        reference: 60_000,
+        luxel: 40_000,
+        reference: 80_000,
         ..LAMPLIT
     };
     agree("plastic under a lamp", &stage, 0, &effort);
