@@ -187,10 +187,10 @@ fn a_slab_transmits_what_its_faces_let_through() {
 #[test]
 fn a_point_out_of_focus_blurs_to_a_disc() {
     const SIDE: u32 = 64;
-    let (aperture, focus, z, lamp) = (0.05, 4.0, 6.5, 0.008);
+    let (aperture, focus, z, lamp) = (0.05, 4.0f64, 6.5, 0.008);
     // The picture is 0.08 wide on the focal plane.
-    let half = 0.04;
-    let vfov = 2.0 * (half / focus as f64).atan().to_degrees();
+    let half: f64 = 0.04;
+    let vfov = 2.0 * (half / focus).atan().to_degrees();
     let scene = |aperture: f64| {
         format!(
             r#"camera: (at: (0, 0, 0), look_at: (0, 0, -1), vfov_deg: {vfov},
