@@ -57,6 +57,19 @@
 //!
 //! * `--fresnel` also takes `off` (dielectrics reflect only totally), since the report that luxel began with shows its glass
 //!   without and with Fresnel reflection.
+//! * `world::Transform` holds its rotation as a matrix: quarter turns through a quaternion are not exact, and a full turn
+//!   must give the rest pose to the bit. `world::Pose` keeps the root's translation apart until the build has subtracted its
+//!   origin, so that a translated scene gives the same bits.
+//! * A sphere counts as a wall by its *diameter*, size against size, when the extent of the scene is found.
+//! * Which traversal runs is read off the buffers, not off [`flat::Needs`], whose `triangles` also counts those of instances.
+//! * A triangle hit whose t is smaller than its error bound is not refused but decided by its sign in f64: refusing lost one
+//!   path in 10⁵ bounces in the corners of a closed box.
+//! * The metadata of an EXR stand in one text attribute, since the writer keeps attributes in a hash map, whose order would
+//!   make equal renders unequal files.
+//! * tobj gets cleaned text in groups of faces with equal attributes, after a scan of our own that resolves every index, so
+//!   that it has nothing to fill in; MTL files are read by a reader of our own. Triangles without area are dropped on
+//!   reading, so that the `prim` channel counts those that are kept.
+//! * The `gltf` crate joins the dependencies with the first scene that uses it.
 
 pub mod asset;
 pub mod build;
