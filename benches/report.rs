@@ -33,7 +33,11 @@ fn main() -> Result<(), Box<dyn Error>> {
             (s.size, s.spp, s.accel) = (CAT.0, CAT.1, accel);
         })?;
         let same = first.get_or_insert_with(|| rendering.clone());
-        assert_eq!(same.film.radiance(), rendering.film.radiance(), "{name}: another image");
+        assert_eq!(
+            same.film.radiance(),
+            rendering.film.radiance(),
+            "{name}: another image"
+        );
         row(name, &settings, theirs, seconds);
     }
     Ok(())
@@ -42,7 +46,9 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn row(name: &str, s: &Settings, theirs: &str, seconds: f64) {
     let (width, height) = s.size;
     let (spp, bounces) = (s.spp, s.trace.max_bounces);
-    println!("| {name} | {width}×{height}, {spp} spp, {bounces} bounces | {theirs} | {seconds:.2} s |");
+    println!(
+        "| {name} | {width}×{height}, {spp} spp, {bounces} bounces | {theirs} | {seconds:.2} s |"
+    );
 }
 
 /// Renders frame 0 of a shipped scene; the seconds hold everything from reading to the last sample.
