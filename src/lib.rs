@@ -22,6 +22,7 @@
 //! | [`trace`] | `&FlatScene` | sums of radiance samples of a tile; infallible loops over SoA path state | hecs, files, rayon |
 //! | [`film`] | sums | statistics, tone mapping, writers | scenes |
 //! | [`render`] | world, settings | drives build → trace → film over tiles and frames | |
+//! | [`measure`] | an image and its reference | error statistics, FLIP, heat maps | what error is too much |
 //! | [`check`] | a `SceneDesc` | every diagnostic at once | pixels |
 //! | [`diag`] | | **data only**: a diagnostic | everything else |
 //! | [`math`] | | vectors, boxes, lanes, functions with fixed bits | everything else |
@@ -79,6 +80,7 @@ pub mod diag;
 pub mod film;
 pub mod flat;
 pub mod math;
+pub mod measure;
 pub mod render;
 pub mod scene;
 pub mod trace;

@@ -84,7 +84,14 @@ fn help_shows_what_exists_and_how() {
     let top = folder.run(&["--help"]);
     expect(&top, 0, &[]);
     let top = text(&top.stdout);
-    for word in ["render", "check", "explain", "Examples:", "Exit codes:"] {
+    for word in [
+        "render",
+        "check",
+        "explain",
+        "compare",
+        "Examples:",
+        "Exit codes:",
+    ] {
         assert!(top.contains(word), "no {word} in:\n{top}");
     }
     let render = text(&folder.run(&["render", "--help"]).stdout);
@@ -437,4 +444,135 @@ fn the_scene_of_the_readme_reads() {
     let (desc, warnings) = read.expect("no errors");
     assert!(warnings.is_empty(), "{warnings:?}");
     luxel::world::spawn(&desc).expect("its files are there");
+}
+
+/// Two renders of the scene with other noise: `a.exr`, `b.exr`, and `a.png`.
+fn renders(name: &str) -> Folder {
+    let folder = Folder::new(name);
+    for (output, seed) in [("a.exr", "1"), ("b.exr", "2"), ("a.png", "1")] {
+        let args = ["render", "scene.ron", "-o", output, "--seed", seed];
+        expect(&folder.run(&args), 0, &[]);
+    }
+    folder
+}
+
+#[test]
+fn an_image_compared_with_itself_has_no_error() {
+    let folder = renders("compare-same");
+    for image in ["a.exr", "a.png"] {
+        for metric in ["rmse", "relmse", "flip"] {
+            let args = ["compare", image, image, "--metric", metric, "--max", "0"];
+            let output = folder.run(&args);
+            expect(&output, 0, &[]);
+            let table = text(&output.stdout);
+            for row in ["RMSE  0\n", "relMSE  0\n", "PSNR  inf dB\n", "FLIP  0\n"] {
+                assert!(table.contains(row), "no {row:?} in:\n{table}");
+            }
+        }
+    }
+}
+
+#[test]
+fn noise_is_measured_and_judged() {
+    let folder = renders("compare-noise");
+    let output = folder.run(&["compare", "a.exr", "b.exr", "--json"]);
+    expect(&output, 0, &[]);
+    let value: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(value["size"], serde_json::json!([40, 24]));
+    assert_eq!(value["pixels"], 960);
+    let of = |name: &str| value[name].as_f64().expect("a number");
+    assert!(of("rmse") > 0.0 && of("relmse") > 0.0);
+    assert!(of("flip") > 0.0 && of("flip") < 1.0);
+    assert!((of("psnr") + 20.0 * of("rmse").log10()).abs() < 1e-9);
+    for metric in ["rmse", "relmse", "flip"] {
+        let judged = |max: f64| {
+            let max = max.to_string();
+            folder.run(&[
+                "compare", "a.exr", "b.exr", "--metric", metric, "--max", &max,
+            ])
+        };
+        expect(&judged(of(metric)), 0, &[]);
+        let output = judged(of(metric) * 0.99);
+        expect(&output, 1, &["is above"]);
+        assert!(text(&output.stdout).contains("reference  b.exr"));
+    }
+    let args = ["compare", "a.exr", "b.exr", "--mask", "peers", "--json"];
+    let masked: serde_json::Value =
+        serde_json::from_slice(&folder.run(&args).stdout).expect("JSON");
+    assert!(masked["pixels"].as_u64() < value["pixels"].as_u64());
+}
+
+#[test]
+fn heat_maps_are_pictures_of_the_same_size() {
+    let folder = renders("compare-heat");
+    for metric in ["flip", "rmse"] {
+        let args = [
+            "compare",
+            "a.exr",
+            "b.exr",
+            "--heatmap",
+            "e.png",
+            "--metric",
+            metric,
+        ];
+        expect(&folder.run(&args), 0, &[]);
+        expect(&folder.run(&["compare", "e.png", "a.exr"]), 0, &[]);
+        fs::remove_file(folder.path("e.png")).expect("written");
+    }
+}
+
+#[test]
+fn what_cannot_be_compared_is_told() {
+    let folder = renders("compare-bad");
+    let small = ["render", "scene.ron", "-o", "small.png", "--size", "8x5"];
+    expect(&folder.run(&small), 0, &[]);
+    fs::write(folder.path("cut.exr"), &folder.bytes("a.exr")[..300]).expect("writable");
+    let before = folder.names();
+    let cases: &[(&[&str], i32, &[&str])] = &[
+        (&["a.exr", "small.png"], 2, &["40×24", "8×5"]),
+        (&["a.exr", "none.exr"], 66, &["none.exr"]),
+        (&["scene.ron", "a.exr"], 65, &["scene.ron", "neither"]),
+        (&["cut.exr", "a.exr"], 65, &["cut.exr", "EXR"]),
+        (&["a.exr"], 2, &["REFERENCE"]),
+        (
+            &["a.exr", "b.exr", "--metric", "psnr", "--max", "30"],
+            2,
+            &["psnr", "--metric rmse"],
+        ),
+        (&["a.exr", "b.exr", "--max", "NaN"], 2, &["0.01"]),
+        (&["a.exr", "b.exr", "--ppd", "1"], 2, &["10 to 1000"]),
+        (&["a.exr", "b.exr", "--heatmap", "e.exr"], 2, &[".png"]),
+        (
+            &["a.exr", "b.exr", "--heatmap", "no/e.png"],
+            74,
+            &["no/e.png"],
+        ),
+    ];
+    for (args, code, words) in cases {
+        let args = [&["compare"], *args].concat();
+        expect(&folder.run(&args), *code, words);
+    }
+    assert_eq!(folder.names(), before);
+}
+
+#[test]
+fn values_that_are_not_finite_fail() {
+    use exr::prelude::write_rgb_file;
+    let folder = Folder::new("compare-nan");
+    let write = |name: &str, bad: f32| {
+        let pixel = |x, y| match (x, y) {
+            (3, 2) | (1, 4) => (0.5f32, bad, 0.5),
+            _ => (0.5, 0.5, 0.5),
+        };
+        write_rgb_file(folder.path(name), 6, 5, pixel).expect("writable");
+    };
+    write("good.exr", 0.5);
+    for (name, bad) in [("nan.exr", f32::NAN), ("inf.exr", f32::INFINITY)] {
+        write(name, bad);
+        let place = ["2 pixels", "not finite", "column 3, row 2"];
+        expect(&folder.run(&["compare", name, "good.exr"]), 1, &place);
+        let output = folder.run(&["compare", "good.exr", name, "--mask", "peers"]);
+        expect(&output, 1, &["the reference has 2 pixels"]);
+        expect(&folder.run(&["compare", name, name]), 1, &["the image has"]);
+    }
 }

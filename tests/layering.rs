@@ -47,10 +47,17 @@ const RULES: &[Rule] = &[
         &["hecs", "rayon", "sha2"],
     ),
     (
+        "measure",
+        &[
+            "render", "world", "build", "trace", "flat", "film", "scene", "asset", "math",
+        ],
+        &["exr", "png", "thiserror"],
+    ),
+    (
         "cli",
         &[
-            "asset", "build", "check", "diag", "film", "flat", "math", "render", "scene", "trace",
-            "world",
+            "asset", "build", "check", "diag", "film", "flat", "math", "measure", "render",
+            "scene", "trace", "world",
         ],
         &[
             "annotate_snippets",

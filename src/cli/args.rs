@@ -25,8 +25,9 @@ Examples:
   luxel render room.ron -o room.exr --aov normal,depth
   luxel check room.ron                             every error at once
   luxel explain room.ron                           what the scene makes luxel do
+  luxel compare quick.exr reference.exr            how wrong a picture is
 
-Exit codes: 0 done, 2 usage, 65 bad scene, 66 missing file, 70 bug, 74 i/o, 130 stopped"
+Exit codes: 0 done, 1 images differ by more than --max, 2 usage, 65 bad scene or image, 66 missing file, 70 bug, 74 i/o, 130 stopped"
 )]
 pub(crate) struct Cli {
     /// What to do.
@@ -43,6 +44,8 @@ pub(crate) enum Command {
     Check(InspectArgs),
     /// Show what a scene requires: stages, buffers, bytes, tree, defaults in force
     Explain(InspectArgs),
+    /// Measure how far an image is from its reference: RMSE, relMSE, PSNR, bias, FLIP
+    Compare(CompareArgs),
 }
 
 /// `luxel render`.
@@ -127,6 +130,65 @@ pub(crate) struct InspectArgs {
     /// Print JSON on stdout
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// `luxel compare`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  luxel compare quick.exr reference.exr            the table
+  luxel compare new.png old.png --metric flip --max 0.01
+                                                   for scripts: exits with 1 if they differ visibly
+  luxel compare quick.exr reference.exr --heatmap where.png
+  luxel compare ours.exr theirs.exr --mask peers --json
+
+The second image is the truth, r; the first, x, is measured against it: relMSE = mean((x-r)^2 / (r^2 + 0.01)) and the
+bias x - r are not symmetric. All but FLIP is measured in linear light; a PNG is decoded first. FLIP is what a person
+would see who alternates between the two on a screen: light is clamped to [0, 1]. The intervals are of 95 %.
+Images of different size cannot be compared (2), and a value that is not finite is an error (1), masked or not.")]
+pub(crate) struct CompareArgs {
+    /// The image to measure (PNG or EXR)
+    pub(crate) image: PathBuf,
+    /// What it should be (PNG or EXR)
+    pub(crate) reference: PathBuf,
+    /// What --max limits and --heatmap shows
+    #[arg(long, value_enum, value_name = "METRIC", default_value_t = MetricArg::Flip)]
+    pub(crate) metric: MetricArg,
+    /// Exit with 1 if the metric is above this; not for psnr, which is larger for better images
+    #[arg(long, value_name = "X", value_parser = parse_error)]
+    pub(crate) max: Option<f64>,
+    /// Draw the error of each pixel, black for none: FLIP, or for other metrics the relative error, brightest at 100 %
+    #[arg(long, value_name = "FILE.png")]
+    pub(crate) heatmap: Option<PathBuf>,
+    /// Measure part of the image only
+    #[arg(long, value_enum)]
+    pub(crate) mask: Option<MaskArg>,
+    /// Pixels per degree of sight, for FLIP [default: 67.02, a 4K screen from its own width away]
+    #[arg(long, value_name = "N", value_parser = parse_ppd)]
+    pub(crate) ppd: Option<f64>,
+    /// Print JSON on stdout
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// `--metric`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum MetricArg {
+    /// Root of the mean squared error
+    Rmse,
+    /// Mean squared error relative to the reference's square
+    Relmse,
+    /// Peak signal to noise ratio in dB, the peak being 1
+    Psnr,
+    /// Mean visible difference, 0 to 1
+    Flip,
+}
+
+/// `--mask`.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum MaskArg {
+    /// Leave out what is brighter than 2 in the reference, and 3 pixels around what is brighter than 8
+    Peers,
 }
 
 /// `on` or `off`.
@@ -242,6 +304,19 @@ fn parse_exposure(text: &str) -> Result<f64, String> {
     stops
         .filter(|stops| (-64.0..=64.0).contains(stops))
         .ok_or_else(|| "write a number of stops from -64 to 64, e.g. -1.5".to_owned())
+}
+
+fn parse_error(text: &str) -> Result<f64, String> {
+    let error: Option<f64> = text.parse().ok();
+    error
+        .filter(|error| *error >= 0.0)
+        .ok_or_else(|| "write an error of at least 0, e.g. 0.01".to_owned())
+}
+
+fn parse_ppd(text: &str) -> Result<f64, String> {
+    let ppd: Option<f64> = text.parse().ok();
+    ppd.filter(|ppd| (10.0..=1000.0).contains(ppd))
+        .ok_or_else(|| "write a number of pixels from 10 to 1000, e.g. 67".to_owned())
 }
 
 fn parse_isa(text: &str) -> Result<Isa, String> {

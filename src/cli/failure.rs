@@ -9,10 +9,12 @@ use std::path::Path;
 pub(crate) mod code {
     /// Done.
     pub(crate) const DONE: u8 = 0;
+    /// Images differ by more than was allowed, or one holds values that are not finite.
+    pub(crate) const DIFFERENT: u8 = 1;
     /// The command line is wrong.
     pub(crate) const USAGE: u8 = 2;
-    /// The scene, or a file that it names, is wrong or missing.
-    pub(crate) const SCENE: u8 = 65;
+    /// The scene, or a file that it names, is wrong or missing; an image is none.
+    pub(crate) const DATA: u8 = 65;
     /// A file named on the command line is missing.
     pub(crate) const NO_INPUT: u8 = 66;
     /// A bug in luxel.
@@ -64,8 +66,24 @@ impl Failure {
     /// The scene is wrong.
     pub(crate) fn scene(diagnostics: Vec<Diagnostic>) -> Failure {
         Failure {
-            code: code::SCENE,
+            code: code::DATA,
             what: What::Diagnostics(diagnostics),
+        }
+    }
+
+    /// A file named on the command line is there, but its content cannot be used. The message names the file.
+    pub(crate) fn bad_file(message: impl fmt::Display) -> Failure {
+        Failure {
+            code: code::DATA,
+            what: What::Message(message.to_string(), None),
+        }
+    }
+
+    /// Images are not as equal as was asked.
+    pub(crate) fn different(message: impl fmt::Display) -> Failure {
+        Failure {
+            code: code::DIFFERENT,
+            what: What::Message(message.to_string(), None),
         }
     }
 

@@ -1,3 +1,67 @@
 //! The command line: arguments, progress, printing, exit codes.
 
+mod args;
+mod check;
+mod compare;
 pub mod diagnostics;
+mod explain;
+mod failure;
+mod interrupt;
+mod load;
+mod output;
+mod progress;
+mod render;
+mod stats;
+
+use args::{Cli, Command};
+use clap::Parser;
+use failure::{Failure, code};
+use std::io::Write;
+use std::process::ExitCode;
+
+/// Parses the arguments of the process and does what they say.
+#[must_use]
+pub fn run() -> ExitCode {
+    install_panic_hook();
+    // Usage errors, help and version leave here: 2, 0, 0.
+    let cli = Cli::parse();
+    let done = match &cli.command {
+        Command::Render(args) => render::run(args),
+        Command::Check(args) => check::run(args),
+        Command::Explain(args) => explain::run(args),
+        Command::Compare(args) => compare::run(args),
+    };
+    match done {
+        Ok(()) => ExitCode::from(code::DONE),
+        Err(failure) => {
+            failure.print();
+            ExitCode::from(failure.code)
+        }
+    }
+}
+
+/// Writes to stdout. A reader that has left is no error: it has what it wanted.
+fn print_result(bytes: &[u8]) -> Result<(), Failure> {
+    let mut stdout = std::io::stdout().lock();
+    match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::io("stdout", &e)),
+        _ => Ok(()),
+    }
+}
+
+/// Writes a line of talk to stderr; if nobody listens, so be it.
+fn say(line: &str) {
+    let _ = writeln!(std::io::stderr().lock(), "{line}");
+}
+
+/// A panic is a bug of luxel, never of its user: say so, and where, and leave at once with the code that says the same.
+fn install_panic_hook() {
+    std::panic::set_hook(Box::new(|info| {
+        say("");
+        say(&format!("luxel: this is a bug in luxel: {info}"));
+        say(
+            "Please report it with the scene and this command line; the output file was not written.",
+        );
+        std::process::exit(i32::from(code::BUG));
+    }));
+}
