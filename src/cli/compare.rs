@@ -183,10 +183,7 @@ impl Measured {
         if value <= max {
             return Ok(());
         }
-        Err(Failure::different(format!(
-            "{name} {} is above {max}",
-            number(value)
-        )))
+        Err(Failure::different(format!("{name} {value} is above {max}")))
     }
 }
 
