@@ -543,6 +543,11 @@ fn what_cannot_be_compared_is_told() {
         (&["a.exr", "b.exr", "--ppd", "1"], 2, &["10 to 1000"]),
         (&["a.exr", "b.exr", "--heatmap", "e.exr"], 2, &[".png"]),
         (
+            &["a.png", "b.exr", "--heatmap", "./a.png"],
+            2,
+            &["overwrite"],
+        ),
+        (
             &["a.exr", "b.exr", "--heatmap", "no/e.png"],
             74,
             &["no/e.png"],

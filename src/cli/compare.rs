@@ -55,6 +55,16 @@ fn check_arguments(args: &CompareArgs) -> Result<(), Failure> {
             "end the name of --heatmap in .png",
         ));
     }
+    let same = |input: &Path| {
+        let real = |path: &Path| std::fs::canonicalize(path).ok();
+        real(path).is_some_and(|path| real(input) == Some(path))
+    };
+    if same(&args.image) || same(&args.reference) {
+        return Err(Failure::usage(
+            "--heatmap would overwrite an image that is compared",
+            "give it another name",
+        ));
+    }
     check_writable(path)
 }
 
