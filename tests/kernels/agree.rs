@@ -3,8 +3,9 @@
 use crate::support::{Parts, Rng, Solid, empty_scene};
 use crate::{EVERY, best, bits, misses, ray, soup, trace};
 use luxel::build::bvh::Accel;
-use luxel::flat::Spheres;
+use luxel::flat::{FlatScene, Spheres};
 use luxel::math::{DAffine3, DQuat, DVec3, Vec3};
+use luxel::trace::spawn::triangle_vertices;
 use luxel::trace::{Hits, Isa, Rays, occluded};
 
 /// Everything at once: two meshes, a soup with degenerate and broken triangles, equal triangles, spheres in the tree and
@@ -121,6 +122,50 @@ fn every_instruction_set_and_every_tree_gives_the_same_bits() {
             h[3] == Hits::NONE || t <= limit,
             "ray {i} at {t} beyond {limit}"
         );
+    }
+}
+
+/// Rays from points of surfaces, as rounded and not moved away: every t of the surface itself is smaller than its error.
+/// Some start exactly on a vertex.
+fn rays_from_surfaces(scene: &FlatScene, n: usize) -> Rays {
+    let mut rng = Rng(4);
+    let seeing = hostile_rays(n);
+    let hits = best(scene, &seeing);
+    let vertices: Vec<[f32; 3]> = (0..scene.world.triangles.place.len() as u32)
+        .flat_map(|prim| triangle_vertices(&scene.world.triangles, prim))
+        .collect();
+    let mut rays = Rays::default();
+    for i in 0..n {
+        let [o, d] = ray(&seeing, i);
+        let start = match i % 4 {
+            0 => vertices[rng.below(vertices.len())],
+            _ => [0, 1, 2].map(|k| o[k] + hits.t[i] * d[k]),
+        };
+        rays.push(start, rng.direction(), f32::MAX);
+    }
+    rays
+}
+
+#[test]
+fn rays_that_start_on_surfaces_agree() {
+    let parts = mixed();
+    let rays = rays_from_surfaces(&parts.scene(Accel::Bvh), 8_001);
+    let truth = trace(&parts.scene(Accel::Bvh), Isa::SCALAR, &rays);
+    let near = truth.t.iter().filter(|t| **t < 1e-6).count();
+    assert!(
+        near > 300,
+        "only {near} rays meet the surface where they start"
+    );
+    for accel in EVERY {
+        let scene = parts.scene(accel);
+        for isa in Isa::all() {
+            let found = trace(&scene, isa, &rays);
+            assert!(bits(&found) == bits(&truth), "{accel:?} {isa:?}");
+            let mut blocked = Vec::new();
+            occluded(&scene, isa, &rays, &mut blocked);
+            let hit: Vec<bool> = truth.prim.iter().map(|p| *p != Hits::NONE).collect();
+            assert!(blocked == hit, "{accel:?} {isa:?} occluded");
+        }
     }
 }
 

@@ -30,8 +30,9 @@ struct Edges<L> {
 
 /// Tests the `L::N` triangles from lane `at` on; returns the lanes that hit, in bits from 0 on.
 ///
-/// A hit's t exceeds its own error bound, so that it is above 0 whatever the rounding, or f64 says that it is above 0; it is
-/// clamped into the widened slab interval of the triangle's own box (a candidate whose interval is empty is none), raised to `floor`, and at most `limit`.
+/// A hit's t exceeds its own error bound, so that it is above 0 whatever the rounding, or its sign in f64 says so
+/// ([`in_front`]). It is clamped into the widened slab interval of the triangle's own box (a candidate whose interval is
+/// empty is none), raised to `floor`, and at most `limit`.
 #[inline(always)]
 pub(super) fn test<L: Lanes>(
     ray: &WalkRay<L>,
@@ -75,23 +76,26 @@ pub(super) fn test<L: Lanes>(
     hits
 }
 
-/// The sign of t in f64, for a t that is smaller than its error: whether the ray goes towards the triangle's plane.
+/// The sign of a t that is smaller than its error, in f64: whether the ray goes towards the triangle's plane. A function of
+/// the ray and the triangle alone, like every rule of what a hit is.
 ///
-/// Rejecting every doubtful t would lose the rays that leave a surface close to an edge for the neighbour across it.
+/// Rejecting every doubtful t would lose the rays that leave a surface close to an edge for the neighbour across it;
+/// accepting it would let rays meet the triangle that they leave, from which `offset_origin` moves them by more than f64
+/// rounds.
 #[inline(always)]
 fn in_front([origin, dir]: [[f32; 3]; 2], block: &TriangleBlock, lane: usize) -> bool {
-    let from = |k: usize, p: [f32; 3]| {
-        [0, 1, 2].map(|axis| f64::from(block.v[k][axis][lane]) - f64::from(p[axis]))
+    let from = |start: [f32; 3], k: usize| {
+        [0, 1, 2].map(|axis| f64::from(block.v[k][axis][lane]) - f64::from(start[axis]))
     };
-    let first = [0, 1, 2].map(|axis| block.v[0][axis][lane]);
-    let [a, b, way] = [from(1, first), from(2, first), from(0, origin)];
+    let corner = [0, 1, 2].map(|axis| block.v[0][axis][lane]);
+    let [a, b, way] = [from(corner, 1), from(corner, 2), from(origin, 0)];
     let normal = [
         a[1] * b[2] - a[2] * b[1],
         a[2] * b[0] - a[0] * b[2],
         a[0] * b[1] - a[1] * b[0],
     ];
-    let dot = |p: [f64; 3]| p[0] * normal[0] + p[1] * normal[1] + p[2] * normal[2];
-    dot(way) * dot(dir.map(f64::from)) > 0.0
+    let along = |p: [f64; 3]| p[0] * normal[0] + p[1] * normal[1] + p[2] * normal[2];
+    along(way) * along(dir.map(f64::from)) > 0.0
 }
 
 impl<L: Lanes> Sheared<L> {
