@@ -10,6 +10,7 @@ mod agreement;
 mod closed;
 mod estimators;
 mod furnace;
+mod invariance;
 mod luxel_side;
 mod npy;
 mod objs;
