@@ -5,7 +5,7 @@
 use crate::luxel_side::{Stage, options};
 use crate::objs;
 use crate::reference::Estimator;
-use crate::stats::assert_agree;
+use crate::stats::{Picture, Z_BAR, assert_agree};
 
 /// Most that a bias of a picture's mean may be and stay unseen.
 const DETECTABLE: f64 = 0.005;
@@ -29,16 +29,16 @@ struct Effort {
 
 /// Under a sky every path finds light.
 const UNDER_SKY: Effort = Effort {
-    luxel: 900,
-    reference: 900,
+    luxel: 512,
+    reference: 480,
     max_bounces: 6,
     lamps: false,
 };
 
 /// With lamps alone.
 const LAMPLIT: Effort = Effort {
-    luxel: 16_000,
-    reference: 16_000,
+    luxel: 2048,
+    reference: 3200,
     max_bounces: 2,
     lamps: true,
 };
@@ -52,7 +52,8 @@ fn stage(name: &str) -> Stage {
         .file("fan.obj", &objs::fan(5, 1.0))
 }
 
-fn agree(name: &str, stage: &Stage, frame: u32, effort: &Effort) {
+/// Asserts that both agree; returns the picture of each.
+fn agree(name: &str, stage: &Stage, frame: u32, effort: &Effort) -> [Picture; 2] {
     let found = stage.luxel(frame, effort.luxel, &options(effort.max_bounces));
     let estimator = Estimator {
         max_bounces: effort.max_bounces,
@@ -60,6 +61,7 @@ fn agree(name: &str, stage: &Stage, frame: u32, effort: &Effort) {
     };
     let truth = stage.reference(frame, effort.reference, estimator);
     assert_agree(name, &found, &truth, DETECTABLE);
+    [found, truth]
 }
 
 /// A scene under the sky: a floor, and `entities` with `materials`.
@@ -204,26 +206,20 @@ fn a_thin_lens() {
 #[test]
 fn a_gaussian_filter() {
     let stage = stage("gaussian").scene(
-        r#"camera: (at: (0, 0, 4), look_at: (0, 0, 0), vfov_deg: 40), render: (size: (8, 8), filter: Gaussian(radius_px: 1.5)),
+        r#"camera: (at: (0, 0, 4), look_at: (0, 0, 0), vfov_deg: 24), render: (size: (8, 8), filter: Gaussian(radius_px: 1.5)),
             entities: [(shape: Sphere(radius: 0.5), transform: (translate: (0.2, 0.1, 0)), emissive: (radiance: (1, 2, 3)))]"#,
     );
     let effort = Effort {
-        luxel: 150_000,
-        reference: 150_000,
+        luxel: 4096,
+        reference: 32_000,
         max_bounces: 0,
         lamps: false,
     };
-    agree("gaussian", &stage, 0, &effort);
-    let found = stage.luxel(0, effort.luxel, &options(0));
-    let estimator = Estimator {
-        max_bounces: 0,
-        lamps: false,
-    };
-    let truth = stage.reference(0, effort.reference, estimator);
+    let [found, truth] = agree("gaussian", &stage, 0, &effort);
     for pixel in 0..64 {
         let only = |x: usize, y: usize| y * 8 + x == pixel;
         let (z, _) = found.mean(0, only).against(truth.mean(0, only));
-        assert!(z < crate::stats::Z_BAR, "pixel {pixel}: z {z:.2}");
+        assert!(z < Z_BAR, "pixel {pixel}: z {z:.2}");
     }
 }
 
@@ -243,18 +239,19 @@ fn a_room_with_a_lamp() {
 fn an_emitting_mesh() {
     let lamp = r#"(shape: Mesh("fan.obj"), normals: Flat, transform: (translate: (0.2, 2, 0), rotate: Euler(170, 0, 20), scale: (0.9, 1, 0.6)),
         emissive: (radiance: (3, 4, 5))), (shape: Sphere(radius: 0.5), transform: (translate: (0, 0.5, 0))),"#;
-    at_night("emitting_mesh", lamp, &LAMPLIT);
+    let effort = Effort {
+        luxel: 3072,
+        reference: 4800,
+        ..LAMPLIT
+    };
+    at_night("emitting_mesh", lamp, &effort);
 }
 
 #[test]
 fn two_lamps() {
     let lamps = r#"(shape: Sphere(radius: 0.5), transform: (translate: (-1, 2.2, 0)), emissive: (radiance: (4, 3, 2))),
         (shape: Sphere(radius: 0.3), transform: (translate: (1, 1.6, 0.2)), material: "floor", emissive: (radiance: (2, 3, 4))),"#;
-    let effort = Effort {
-        reference: 24_000,
-        ..LAMPLIT
-    };
-    at_night("two_lamps", lamps, &effort);
+    at_night("two_lamps", lamps, &LAMPLIT);
 }
 
 #[test]
@@ -262,13 +259,13 @@ fn plastic_under_a_lamp() {
     let stage = stage("plastic_lamp").scene(&format!(
         r#"{NIGHT_CAMERA} {SIZE} materials: {{{FLOOR_MATERIAL} "coat": Plastic(color: Linear(0.8, 0.7, 0.6), ior: 1.6)}},
             entities: [{FLOOR} (shape: Sphere(radius: 0.7), transform: (translate: (0, 0.7, 0)), material: "coat"),
-                (shape: Sphere(radius: 0.9), transform: (translate: (-2, 3.4, 0.5)), emissive: (radiance: (3, 3, 3)))]"#
+                (shape: Sphere(radius: 1.3), transform: (translate: (-2, 3.4, 0.5)), emissive: (radiance: (1.5, 1.5, 1.5)))]"#
     ));
     // Direct light alone: the coat's caustics on the floor are too rare for the reference.
     let effort = Effort {
         max_bounces: 1,
-        luxel: 40_000,
-        reference: 80_000,
+        luxel: 6144,
+        reference: 9600,
         ..LAMPLIT
     };
     agree("plastic under a lamp", &stage, 0, &effort);

@@ -31,7 +31,9 @@ fn means(stage: &Stage, spp: u32, options: &TraceOptions) -> Mean {
     let means: Vec<f64> = (0..SEEDS)
         .map(|seed| {
             let options = TraceOptions { seed, ..*options };
-            stage.luxel(0, spp, &options).whole(0).value
+            let sums = stage.sums(0, spp, &options);
+            let samples: u32 = sums.count.iter().sum();
+            sums.rgb.iter().map(|rgb| rgb[0]).sum::<f64>() / f64::from(samples)
         })
         .collect();
     Mean::of(&means)

@@ -127,6 +127,6 @@ fn clear_glass_vanishes_in_a_white_sky() {
 #[test]
 fn white_plastic_vanishes_on_average() {
     let stage = ball("white_plastic", "Plastic(color: Linear(1, 1, 1))");
-    let picture = stage.luxel(0, 4_000, &bare(50, Sampler::Independent));
+    let picture = stage.luxel(0, 2048, &bare(50, Sampler::Sobol));
     assert_mean("white plastic", picture.whole(0), Mean::exact(1.0), 0.003);
 }

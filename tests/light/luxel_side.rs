@@ -15,7 +15,10 @@ pub(crate) struct Stage {
     text: String,
 }
 
-/// Independent samples: their variance is what the statistics take it for.
+/// Seeds of one picture: their spread is its error.
+const SEEDS: u64 = 16;
+
+/// Independent samples.
 pub(crate) fn options(max_bounces: u32) -> TraceOptions {
     TraceOptions {
         max_bounces,
@@ -78,11 +81,24 @@ impl Stage {
         trace(&self.flat(frame, options), spp, options)
     }
 
-    /// What luxel makes of it, for statistics.
+    /// What luxel makes of it, for statistics: the pictures of [`SEEDS`] seeds with Sobol points, together `spp` samples
+    /// of every pixel. Each is one estimate: samples of one seed are not independent of each other, seeds are.
     pub(crate) fn luxel(&self, frame: u32, spp: u32, options: &TraceOptions) -> Picture {
         let flat = self.flat(frame, options);
-        let sums = trace(&flat, spp, options);
-        picture(&flat, sums)
+        let (width, height) = (flat.camera.width as usize, flat.camera.height as usize);
+        let mut picture = Picture::new(width, height);
+        for seed in 0..SEEDS {
+            let options = TraceOptions {
+                seed,
+                sampler: Sampler::Sobol,
+                ..*options
+            };
+            let sums = trace(&flat, spp / SEEDS as u32, &options);
+            for (i, (sum, n)) in sums.rgb.iter().zip(&sums.count).enumerate() {
+                picture.add(i % width, i / width, sum.map(|s| s / f64::from(*n)));
+            }
+        }
+        picture
     }
 
     /// The scene as the reference sees it.
@@ -129,15 +145,4 @@ pub(crate) fn trace(flat: &FlatScene, spp: u32, options: &TraceOptions) -> TileS
     let lost: u32 = sums.non_finite.iter().sum();
     assert_eq!(lost, 0, "samples that are not finite");
     sums
-}
-
-/// Sums as a picture with variances.
-pub(crate) fn picture(flat: &FlatScene, sums: TileSums) -> Picture {
-    Picture {
-        width: flat.camera.width as usize,
-        height: flat.camera.height as usize,
-        sum: sums.rgb,
-        squares: sums.rgb_squared,
-        count: sums.count.iter().map(|n| f64::from(*n)).collect(),
-    }
 }

@@ -76,7 +76,7 @@ fn a_sphere_lights_a_plane() {
                 triple(lamp)
             ));
         let truth = 2.0 * 0.5 * closed::sphere_light(theta, s);
-        let spp = [[20_000, 1_500], [7_000, 4_500], [300_000, 30_000]][k];
+        let spp = [[2048, 512], [2048, 1024], [32_768, 4096]][k];
         by_all_estimators(&format!("sphere light {k}"), &stage, 1, spp, truth);
     }
 }
@@ -95,7 +95,7 @@ fn a_disc_of_triangles_lights_a_plane() {
             spot([-0.4, 0.3, 0.1], [0.0; 3]),
         ));
     let truth = 3.0 * 0.5 * closed::disc_light(x, h, r);
-    by_all_estimators("disc light", &stage, 1, [40_000, 4_000], truth);
+    by_all_estimators("disc light", &stage, 1, [8192, 1024], truth);
 }
 
 #[test]
@@ -109,7 +109,7 @@ fn a_ball_shades_the_plane_it_rests_on() {
             spot([3.0, 0.9, 0.0], [0.0; 3]),
             -x
         ));
-    let picture = stage.luxel(0, 40_000, &options(1));
+    let picture = stage.luxel(0, 8192, &options(1));
     let truth = 0.5 * closed::contact(x, 1.0);
     assert_mean("contact", picture.whole(0), Mean::exact(truth), DETECTABLE);
 }
@@ -122,7 +122,7 @@ fn an_emitting_room_multiplies_its_light() {
         spot([0.3, 0.2, 0.1], [1.0, 0.7, 0.2])
     ));
     let truth = closed::furnace(0.5, 7);
-    by_all_estimators("emitting room", &stage, 7, [9_000, 9_000], truth);
+    by_all_estimators("emitting room", &stage, 7, [2048, 2048], truth);
 }
 
 #[test]
@@ -142,7 +142,7 @@ fn an_integrating_sphere_is_lit_evenly() {
             height - 1.0
         ));
     let truth = closed::integrating_sphere(share, emission, albedo);
-    by_all_estimators("integrating sphere", &stage, 60, [12_000, 6_000], truth);
+    by_all_estimators("integrating sphere", &stage, 60, [8192, 2048], truth);
 }
 
 #[test]
@@ -155,7 +155,7 @@ fn concentric_spheres_exchange_light() {
         ))
     };
     let (inner, outer) = closed::concentric(0.5, 1.0, 0.3, 0.8);
-    let spp = [4_000, 4_000];
+    let spp = [2048, 2048];
     by_all_estimators("outer", &stage("outer", [0.5, 0.3, 4.0]), 60, spp, outer);
     by_all_estimators("inner", &stage("inner", [0.0; 3]), 60, spp, inner);
 }
@@ -173,7 +173,7 @@ fn a_slab_transmits_what_its_faces_let_through() {
                     transform: (translate: (0, 0, -1), scale: 60), emissive: (radiance: (1, 1, 1)))]"#,
                 spot([3.0 * sin, 0.01, 3.0 * cos], [0.0, 0.013, 0.0])
             ));
-        let picture = stage.luxel(0, 8_000, &options(60));
+        let picture = stage.luxel(0, 2048, &options(60));
         let truth = Mean::exact(closed::slab(deg, 1.5));
         assert_mean(
             &format!("slab at {deg}°"),
@@ -200,7 +200,7 @@ fn a_point_out_of_focus_blurs_to_a_disc() {
         )
     };
     let stage = Stage::new("blur").scene(&scene(aperture));
-    let picture = stage.luxel(0, 1_000, &options(0));
+    let picture = stage.luxel(0, 512, &options(0));
     let pixel = 2.0 * half / f64::from(SIDE);
     // A disc's mean square radius is half its squared radius: of the blur, of the lamp; a pixel adds its own.
     let c = closed::blur(aperture, focus, z);
@@ -216,7 +216,7 @@ fn a_point_out_of_focus_blurs_to_a_disc() {
 
     let sharp = Stage::new("sharp")
         .scene(&scene(0.0))
-        .luxel(0, 1_000, &options(0));
+        .luxel(0, 512, &options(0));
     assert_mean(
         "energy of the blur",
         picture.whole(0),

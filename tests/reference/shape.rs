@@ -57,24 +57,25 @@ impl Shape {
         }
     }
 
-    pub(crate) fn area(&self) -> f64 {
-        match self {
-            Shape::Sphere { radius, .. } => 4.0 * PI * radius * radius,
-            Shape::Triangle { p, .. } => (p[1] - p[0]).cross(p[2] - p[0]).length() / 2.0,
-        }
-    }
-
-    /// A point uniform by area, with the geometric normal there.
-    pub(crate) fn sample_area(&self, random: &mut Random) -> (DVec3, DVec3) {
+    /// A point uniform by area among those that may face `from`, with the geometric normal there, and their area.
+    pub(crate) fn sample_area(&self, from: DVec3, random: &mut Random) -> (DVec3, DVec3, f64) {
         match self {
             Shape::Sphere {
                 center,
                 radius,
                 inverted,
             } => {
-                let n = random.sphere();
-                let side = if *inverted { -1.0 } else { 1.0 };
-                (*center + n * *radius, n * side)
+                // From outside, the cap up to the horizon at cos = r / d: its area is as its height (Archimedes).
+                let to = from - *center;
+                let horizon = (radius / to.length()).min(1.0);
+                let (low, side) = if *inverted {
+                    (-1.0, -1.0)
+                } else {
+                    (horizon, 1.0)
+                };
+                let n = random.cap(to.normalize_or(DVec3::Z), low);
+                let area = 2.0 * PI * radius * radius * (1.0 - low);
+                (*center + n * *radius, n * side, area)
             }
             Shape::Triangle { p, .. } => {
                 let (mut a, mut b) = (random.unit(), random.unit());
@@ -82,7 +83,9 @@ impl Shape {
                     (a, b) = (1.0 - a, 1.0 - b);
                 }
                 let (e, f) = (p[1] - p[0], p[2] - p[0]);
-                (p[0] + e * a + f * b, e.cross(f).normalize())
+                let normal = e.cross(f);
+                let area = normal.length() / 2.0;
+                (p[0] + e * a + f * b, normal.normalize(), area)
             }
         }
     }

@@ -14,10 +14,13 @@ pub(crate) struct Estimator {
     pub(crate) lamps: bool,
 }
 
-/// Lamps with their areas: one is chosen uniformly.
-struct Lamps(Vec<(usize, f64)>);
+/// Lamps: one is chosen uniformly.
+struct Lamps(Vec<usize>);
 
-/// Renders `spp` samples of every pixel.
+/// Batches of samples of a pixel: each batch is one estimate of a picture's statistics.
+const BATCHES: u32 = 16;
+
+/// Renders `spp` samples of every pixel, stratified within batches.
 pub(crate) fn render(scene: &Scene, estimator: Estimator, spp: u32, seed: u64) -> Picture {
     let lamps = Lamps(
         scene
@@ -25,7 +28,7 @@ pub(crate) fn render(scene: &Scene, estimator: Estimator, spp: u32, seed: u64) -
             .iter()
             .enumerate()
             .filter(|(_, s)| estimator.lamps && s.emission != DVec3::ZERO)
-            .map(|(i, s)| (i, s.shape.area()))
+            .map(|(i, _)| i)
             .collect(),
     );
     let camera = &scene.camera;
@@ -33,10 +36,20 @@ pub(crate) fn render(scene: &Scene, estimator: Estimator, spp: u32, seed: u64) -
     let mut random = Random::new(seed);
     for y in 0..camera.height {
         for x in 0..camera.width {
-            for _ in 0..spp {
-                let ray = camera.ray(x, y, &mut random);
-                let sample = radiance(scene, &lamps, ray, estimator.max_bounces, &mut random);
-                picture.add(x as usize, y as usize, sample.to_array());
+            for _ in 0..BATCHES {
+                let samples = spp / BATCHES;
+                random.batch(samples as usize);
+                let mut sum = DVec3::ZERO;
+                for i in 0..samples {
+                    random.sample(i as usize);
+                    let ray = camera.ray(x, y, &mut random);
+                    sum += radiance(scene, &lamps, ray, estimator.max_bounces, &mut random);
+                }
+                picture.add(
+                    x as usize,
+                    y as usize,
+                    (sum / f64::from(samples)).to_array(),
+                );
             }
         }
     }
@@ -98,8 +111,8 @@ impl Lamps {
         random: &mut Random,
     ) -> DVec3 {
         let k = (random.unit() * self.0.len() as f64) as usize;
-        let (lamp, area) = self.0[k];
-        let (there, normal) = scene.surfaces[lamp].shape.sample_area(random);
+        let lamp = self.0[k];
+        let (there, normal, area) = scene.surfaces[lamp].shape.sample_area(position, random);
         let way = there - position;
         let r2 = way.length_squared();
         let dir = way / r2.sqrt();
