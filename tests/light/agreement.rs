@@ -281,3 +281,31 @@ fn an_inverted_lamp_around_everything() {
     };
     at_night("inverted_lamp", dome, &effort);
 }
+
+#[test]
+fn a_textured_sphere() {
+    let rgb: Vec<u8> = (0..7 * 5 * 3).map(|k| (k * 89 % 256) as u8).collect();
+    let stage = stage("textured_sphere").png("coat.png", &rgb, 7, 5).scene(&format!(
+        r#"{CAMERA} {SIZE} {SKY} materials: {{{FLOOR_MATERIAL} "coat": Diffuse(color: Texture("coat.png"))}},
+            entities: [{FLOOR} (name: "hub", transform: (translate: (0.2, 0.8, 0), rotate: Euler(20, 0, -35))),
+                (shape: Sphere(radius: 0.4), material: "coat", parent: "hub",
+                transform: (rotate: Euler(-15, 130, 40), scale: 2))]"#
+    ));
+    agree("textured sphere", &stage, 0, &UNDER_SKY);
+}
+
+/// The camera of an entity: its parents carry it, and its spin turns it.
+#[test]
+fn a_carried_camera() {
+    let stage = stage("carried_camera").scene(&format!(
+        r#"{SIZE} {SKY} materials: {{{FLOOR_MATERIAL} "it": Diffuse(color: Linear(0.7, 0.2, 0.2))}},
+            entities: [{FLOOR} (name: "arm", transform: (translate: (0.3, 0.9, 0), rotate: Euler(0, 20, 0), scale: (2, 2, 2)),
+                    spin: (axis: (0, 1, 0), deg_per_s: 30)),
+                (parent: "arm", transform: (translate: (0, 0.3, 2), rotate: Euler(-12, 5, 25)),
+                    spin: (axis: (0, 0, 1), deg_per_s: -60, pivot: (0.1, 0.2, 2)), camera: (vfov_deg: 45)),
+                (shape: Mesh("cube.obj"), normals: Flat, material: "it",
+                    transform: (translate: (0.2, 0.6, 0), rotate: Euler(0, 20, 10), scale: (0.3, 0.5, 0.4)))],
+            animation: (fps: 24, frames: 0..48)"#
+    ));
+    agree("carried camera, frame 11", &stage, 11, &UNDER_SKY);
+}

@@ -6,7 +6,7 @@ use crate::reference::{
     render,
 };
 use crate::stats::{Mean, assert_mean};
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 use std::rc::Rc;
 
 const BARE: Estimator = Estimator {
@@ -49,6 +49,7 @@ fn ball(center: DVec3, radius: f64, inverted: bool) -> Shape {
         center,
         radius,
         inverted,
+        axes: DMat3::IDENTITY,
     }
 }
 

@@ -1,6 +1,6 @@
 //! A scene description to a reference scene: poses, meshes and materials by code of its own.
 //!
-//! Understands what the tests use: a camera at top level, meshes with file normals or `Flat`, materials on the entity.
+//! Understands what the tests use: a camera at top level or on an entity, meshes with file normals or `Flat`, materials on the entity.
 
 use super::{
     Camera, Color, Filter, Image, Kind, Material, Scene, Shape, Surface, Wrap,
@@ -8,8 +8,8 @@ use super::{
 };
 use glam::{DMat3, DVec3};
 use luxel::scene::{
-    ColorDesc, EntityDesc, FilterDesc, MaterialDesc, NormalsDesc, RotateDesc, SceneDesc, ShapeDesc,
-    TextureFilterDesc, WrapDesc,
+    CameraDesc, ColorDesc, EntityDesc, FilterDesc, MaterialDesc, NormalsDesc, RotateDesc,
+    SceneDesc, ShapeDesc, TextureFilterDesc, WrapDesc,
 };
 use std::path::Path;
 use std::rc::Rc;
@@ -73,7 +73,7 @@ pub(crate) fn scene(desc: &SceneDesc, frame: u32) -> Scene {
     Scene {
         surfaces,
         background: constant(&desc.background),
-        camera: camera(desc),
+        camera: camera(desc, time),
     }
 }
 
@@ -168,6 +168,7 @@ fn shapes(shape: &ShapeDesc, entity: &EntityDesc, map: &Map, folder: &Path) -> V
             center: map.offset,
             radius: radius * map.linear.determinant().abs().cbrt(),
             inverted: *inverted,
+            axes: map.linear,
         }],
         ShapeDesc::Mesh(path) => obj::read(&folder.join(&path.value))
             .into_iter()
@@ -194,12 +195,31 @@ fn triangle(face: obj::Face, normals: Option<NormalsDesc>, map: &Map) -> Shape {
     }
 }
 
-fn camera(desc: &SceneDesc) -> Camera {
-    let camera = desc.camera.as_ref().expect("a camera at top level");
-    let pose = camera.pose.as_ref().expect("its pose");
-    let eye = DVec3::from(pose.at);
-    let forward = (DVec3::from(pose.look_at) - eye).normalize();
-    let right = forward.cross(DVec3::from(pose.up)).normalize();
+/// Where the camera stands, and unit vectors forward and to the right.
+fn view(desc: &SceneDesc, time: f64) -> (&CameraDesc, DVec3, [DVec3; 2]) {
+    if let Some(camera) = &desc.camera {
+        let pose = camera.pose.as_ref().expect("its pose");
+        let eye = DVec3::from(pose.at);
+        let forward = (DVec3::from(pose.look_at) - eye).normalize();
+        let right = forward.cross(DVec3::from(pose.up)).normalize();
+        return (camera, eye, [forward, right]);
+    }
+    let mut cameras = desc.entities.iter().enumerate().filter_map(|(i, e)| {
+        let camera = e.value.camera.as_ref()?;
+        Some((i, camera))
+    });
+    let (i, camera) = cameras.next().expect("a camera");
+    let map = map_of(desc, i, time);
+    let forward = (map.linear * DVec3::NEG_Z).normalize();
+    (
+        camera,
+        map.offset,
+        [forward, (map.linear * DVec3::X).normalize()],
+    )
+}
+
+fn camera(desc: &SceneDesc, time: f64) -> Camera {
+    let (camera, eye, [forward, right]) = view(desc, time);
     Camera {
         eye,
         right,

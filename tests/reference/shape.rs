@@ -1,7 +1,7 @@
 //! Intersection in f64. A ray that leaves a surface knows which, so no epsilon is needed.
 
 use super::{Random, Scene};
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 use std::f64::consts::PI;
 
 pub(crate) enum Shape {
@@ -9,6 +9,8 @@ pub(crate) enum Shape {
         center: DVec3,
         radius: f64,
         inverted: bool,
+        /// Its own axes in the scene: orthonormal, but for a common factor.
+        axes: DMat3,
     },
     /// Counter-clockwise seen from the side of the geometric normal.
     Triangle {
@@ -64,6 +66,7 @@ impl Shape {
                 center,
                 radius,
                 inverted,
+                ..
             } => {
                 // From outside, the cap up to the horizon at cos = r / d: its area is as its height (Archimedes).
                 let to = from - *center;
@@ -138,6 +141,14 @@ pub(crate) fn closest(scene: &Scene, ray: &Ray) -> Option<Hit> {
     best.map(|(i, crossing)| hit(scene, ray, i, crossing))
 }
 
+/// An image around a ball as it is read from outside: the middle column faces +Z, columns to the right of it +X, the top
+/// row the north pole, +Y.
+fn sphere_uv(p: DVec3) -> DVec2 {
+    let east = p.x.atan2(p.z).to_degrees();
+    let north = p.y.atan2(p.x.hypot(p.z)).to_degrees();
+    DVec2::new((east + 180.0) / 360.0, (north + 90.0) / 180.0)
+}
+
 fn hit(scene: &Scene, ray: &Ray, surface: usize, (t, w): Crossing) -> Hit {
     let there = ray.origin + ray.dir * t;
     match &scene.surfaces[surface].shape {
@@ -145,6 +156,7 @@ fn hit(scene: &Scene, ray: &Ray, surface: usize, (t, w): Crossing) -> Hit {
             center,
             radius,
             inverted,
+            axes,
         } => {
             let out = (there - *center).normalize();
             let ng = if *inverted { -out } else { out };
@@ -154,7 +166,7 @@ fn hit(scene: &Scene, ray: &Ray, surface: usize, (t, w): Crossing) -> Hit {
                 position: *center + out * *radius,
                 ng,
                 ns: ng,
-                uv: DVec2::ZERO,
+                uv: sphere_uv(axes.transpose() * out),
                 margin: 1.0,
             }
         }
