@@ -264,8 +264,8 @@ fn plastic_under_a_lamp() {
     // Direct light alone: the coat's caustics on the floor are too rare for the reference.
     let effort = Effort {
         max_bounces: 1,
-        luxel: 6144,
-        reference: 9600,
+        luxel: 4096,
+        reference: 6400,
         ..LAMPLIT
     };
     agree("plastic under a lamp", &stage, 0, &effort);
