@@ -247,6 +247,23 @@ fn an_emitting_mesh() {
     at_night("emitting_mesh", lamp, &effort);
 }
 
+/// One emitting mesh in three places, twice mirrored: each shines from the image of its outside alone.
+#[test]
+fn mirrored_lamps() {
+    let lamps = r#"(shape: Mesh("fan.obj"), normals: Flat, transform: (translate: (-0.8, 1.8, 0), rotate: Euler(170, 0, 20), scale: (0.6, 1, 0.6)),
+            emissive: (radiance: (3, 4, 5))),
+        (shape: Mesh("fan.obj"), normals: Flat, transform: (translate: (0.8, 1.7, 0.2), rotate: Euler(10, 0, -15), scale: (0.5, -1, 0.7)),
+            emissive: (radiance: (5, 4, 3))),
+        (shape: Mesh("fan.obj"), normals: Flat, transform: (translate: (0, 1.9, -0.6), rotate: Euler(190, 0, 5), scale: (-0.5, 1, 0.4)),
+            emissive: (radiance: (6, 5, 5))),"#;
+    let effort = Effort {
+        luxel: 1024,
+        reference: 960,
+        ..LAMPLIT
+    };
+    at_night("mirrored_lamps", lamps, &effort);
+}
+
 #[test]
 fn two_lamps() {
     let lamps = r#"(shape: Sphere(radius: 0.5), transform: (translate: (-1, 2.2, 0)), emissive: (radiance: (4, 3, 2))),

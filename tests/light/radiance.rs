@@ -125,6 +125,23 @@ fn an_emitting_room_multiplies_its_light() {
     by_all_estimators("emitting room", &stage, 7, [2048, 2048], truth);
 }
 
+/// The series with roulette on: a third of the light comes after it has begun.
+#[test]
+fn roulette_keeps_what_it_ends() {
+    let stage = Stage::new("roulette").scene(&format!(
+        r#"{} {HALF} entities: [(shape: Sphere(radius: 2, inverted: true), material: "outer",
+            emissive: (radiance: (1, 1, 1)))]"#,
+        spot([0.3, 0.2, 0.1], [1.0, 0.7, 0.2])
+    ));
+    let options = TraceOptions {
+        nee: false,
+        ..options(60)
+    };
+    let picture = stage.luxel(0, 8192, &options);
+    let truth = Mean::exact(closed::furnace(0.8, 60));
+    assert_mean("roulette", picture.whole(0), truth, DETECTABLE / 2.0);
+}
+
 #[test]
 fn an_integrating_sphere_is_lit_evenly() {
     // The disc on the rim of the cap covers what the cap would. Its inscribed polygon is 2π²/3n² too small.
