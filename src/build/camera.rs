@@ -25,10 +25,16 @@ pub(crate) fn camera(
         down: down.as_vec3().to_array(),
         forward: forward.as_vec3().to_array(),
         pixel: (2.0 * (sin / cos) / f64::from(height)) as f32,
-        aperture_radius: (camera.aperture_radius * rebase.scale) as f32,
-        focus_distance: (camera.focus_distance * rebase.scale) as f32,
+        aperture_radius: finite(camera.aperture_radius * rebase.scale),
+        // Never 0: the lens divides by it.
+        focus_distance: finite(camera.focus_distance * rebase.scale).max(f32::MIN_POSITIVE),
         width,
         height,
         filter: options.filter,
     }
+}
+
+/// A length in scene units; beyond the range of f32 the farthest there is.
+fn finite(length: f64) -> f32 {
+    (length as f32).min(f32::MAX)
 }

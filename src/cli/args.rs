@@ -1,5 +1,10 @@
 //! The arguments. Every number is checked here, with its range in the message.
 
+use crate::build::Accel;
+use crate::film::Aov;
+use crate::scene::RenderDesc;
+use crate::trace::isa::{Isa, Level};
+use crate::trace::{Fresnel, Sampler};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use luxel::film::Aov;
@@ -7,11 +12,6 @@ use luxel::trace::isa::{Isa, Level};
 use luxel::trace::{Fresnel, Sampler};
 use std::path::PathBuf;
 use std::time::Duration;
-
-/// Most pixels of an image: 8 GB of sums.
-const MAX_PIXELS: u64 = 1 << 27;
-/// Longest side of an image.
-const MAX_SIDE: u32 = 1 << 15;
 
 /// A path tracer for scenes that are lists of entities: author in RON, render, measure.
 #[derive(Debug, Parser)]
@@ -67,7 +67,7 @@ pub(crate) struct RenderArgs {
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
     /// Samples per pixel [default: the scene's]
-    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..=1 << 24))]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..=i64::from(RenderDesc::MAX_SPP)))]
     pub(crate) spp: Option<u32>,
     /// Stop after this time, if that comes before --spp: 30s, 2m, 500ms
     #[arg(long, value_name = "TIME", value_parser = parse_time)]
@@ -79,7 +79,7 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "K", default_value_t = 0)]
     pub(crate) frame: u32,
     /// Scattering events on a path; 1 is direct light only [default: the scene's]
-    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(0..=65535))]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(0..=i64::from(RenderDesc::MAX_BOUNCES)))]
     pub(crate) bounces: Option<u32>,
     /// Exposure of a PNG in stops: +1 is twice as bright. An EXR stays linear
     #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true, value_parser = parse_exposure)]
@@ -265,16 +265,20 @@ fn aov_parser() -> impl TypedValueParser<Value = Aov> {
 fn parse_size(text: &str) -> Result<(u32, u32), String> {
     let side = |s: &str| {
         let side = s.parse::<u32>().ok();
-        side.filter(|side| (1..=MAX_SIDE).contains(side))
+        side.filter(|side| (1..=RenderDesc::MAX_SIDE).contains(side))
     };
     let sides = text.split_once(['x', 'X']);
     let Some((width, height)) = sides.and_then(|(w, h)| Some((side(w)?, side(h)?))) else {
         return Err(format!(
-            "write width x height, each 1 to {MAX_SIDE}, e.g. 640x360"
+            "write width x height, each 1 to {}, e.g. 640x360",
+            RenderDesc::MAX_SIDE
         ));
     };
-    if u64::from(width) * u64::from(height) > MAX_PIXELS {
-        return Err(format!("at most {MAX_PIXELS} pixels fit; make a side smaller"));
+    if u64::from(width) * u64::from(height) > RenderDesc::MAX_PIXELS {
+        return Err(format!(
+            "at most {} pixels fit; make a side smaller",
+            RenderDesc::MAX_PIXELS
+        ));
     }
     Ok((width, height))
 }

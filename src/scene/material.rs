@@ -6,6 +6,11 @@ use super::schema::{ColorDesc, MaterialDesc, NamedMaterial};
 use super::values::{ColorRole, Domain};
 use crate::diag::codes;
 
+/// Indices of refraction are above this and below the next, far beyond any matter: glass multiplies radiance by the
+/// squared index, and a plastic divides by what its coat lets out, about 1 / n³, in single precision.
+const MIN_IOR: f64 = 0.01;
+const MAX_IOR: f64 = 100.0;
+
 /// The materials of the map, each read by itself; an unreadable one keeps its name with the default material, so
 /// that what refers to it is not reported too.
 pub(super) fn materials<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<Vec<NamedMaterial>> {
@@ -79,7 +84,7 @@ fn color(fields: &Fields<'_, '_>, default: [f64; 3]) -> ColorDesc {
 
 fn ior(fields: &Fields<'_, '_>) -> f64 {
     fields.read_or("ior", MaterialDesc::IOR, |r, n| {
-        r.number(n, "`ior`", Domain::Positive)
+        r.number(n, "`ior`", Domain::Between(MIN_IOR, MAX_IOR))
     })
 }
 

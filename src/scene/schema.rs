@@ -54,6 +54,17 @@ pub struct RenderDesc {
     pub filter: FilterDesc,
 }
 
+impl RenderDesc {
+    /// Longest side of an image in pixels.
+    pub const MAX_SIDE: u32 = 1 << 15;
+    /// Most pixels of an image: 8 GB of sums.
+    pub const MAX_PIXELS: u64 = 1 << 27;
+    /// Most samples per pixel: a count that single precision still holds exactly.
+    pub const MAX_SPP: u32 = 1 << 24;
+    /// Most scattering events: far beyond what any path survives.
+    pub const MAX_BOUNCES: u32 = 65_535;
+}
+
 impl Default for RenderDesc {
     fn default() -> Self {
         RenderDesc {
@@ -207,7 +218,7 @@ pub enum MaterialDesc {
     },
     /// Smooth dielectric. Default ior 1.5, colour Linear(1, 1, 1).
     Glass {
-        /// Index of refraction, inside over outside at this surface; above 0.
+        /// Index of refraction, inside over outside at this surface; between 0.01 and 100.
         ior: f64,
         /// Multiplies each transmission, never reflection.
         color: ColorDesc,

@@ -7,8 +7,11 @@ use super::values::Domain;
 use crate::diag::codes;
 use std::ops::Range;
 
-/// Longest side of an image in pixels; the pixels of a square of it still count in 32 bits and one.
-const MAX_SIDE: u32 = 65_536;
+/// Widest pixel filter: the side of the largest image.
+const MAX_FILTER_RADIUS: f64 = RenderDesc::MAX_SIDE as f64;
+
+/// Largest aperture in focus distances: light may come in almost along the lens, but not from every place at once.
+const MAX_APERTURE_IN_FOCUS: f64 = 1e6;
 
 pub(super) fn render<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<RenderDesc> {
     let fields = Fields::read(
@@ -20,9 +23,11 @@ pub(super) fn render<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<RenderDe
     let default = RenderDesc::default();
     Some(RenderDesc {
         size: fields.read_or("size", default.size, size),
-        spp: fields.read_or("spp", default.spp, |r, n| r.whole(n, "`spp`", 1, u32::MAX)),
+        spp: fields.read_or("spp", default.spp, |r, n| {
+            r.whole(n, "`spp`", 1, RenderDesc::MAX_SPP)
+        }),
         max_bounces: fields.read_or("max_bounces", default.max_bounces, |r, n| {
-            r.whole(n, "`max_bounces`", 0, u32::MAX)
+            r.whole(n, "`max_bounces`", 0, RenderDesc::MAX_BOUNCES)
         }),
         filter: fields.read_or("filter", default.filter, filter),
     })
@@ -34,9 +39,16 @@ fn size<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<(u32, u32)> {
     let [width, height] = items[..] else {
         return reader.wrong_type(node, "`size`", WANTED);
     };
-    let width = reader.whole(width, "the width", 1, MAX_SIDE);
-    let height = reader.whole(height, "the height", 1, MAX_SIDE);
-    Some((width?, height?))
+    let width = reader.whole(width, "the width", 1, RenderDesc::MAX_SIDE);
+    let height = reader.whole(height, "the height", 1, RenderDesc::MAX_SIDE);
+    let (width, height) = (width?, height?);
+    if u64::from(width) * u64::from(height) > RenderDesc::MAX_PIXELS {
+        let most = RenderDesc::MAX_PIXELS;
+        let message = format!("`size` must be at most {most} pixels, not {width} x {height}");
+        reader.error_hint(codes::OUT_OF_RANGE, node, message, "make a side smaller");
+        return None;
+    }
+    Some((width, height))
 }
 
 fn filter<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<FilterDesc> {
@@ -47,7 +59,7 @@ fn filter<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<FilterDesc> {
     }
     let fields = Fields::read(reader, body, "`Gaussian`", &["radius_px"])?;
     let radius_px = fields.read_or("radius_px", FilterDesc::GAUSSIAN_RADIUS_PX, |r, n| {
-        r.number(n, "`radius_px`", Domain::Positive)
+        r.number(n, "`radius_px`", Domain::Between(0.0, MAX_FILTER_RADIUS))
     });
     Some(FilterDesc::Gaussian { radius_px })
 }
@@ -104,13 +116,22 @@ fn optics(fields: &Fields<'_, '_>, default_focus: f64) -> CameraDesc {
         Fields::read(r, n, "`lens`", &["aperture_radius", "focus_distance"]).map(|f| lens(&f))
     });
     let (aperture, focus) = lens.unwrap_or_default();
+    let aperture = aperture.unwrap_or(CameraDesc::APERTURE_RADIUS);
+    let focus = focus.unwrap_or(default_focus);
+    if let (Some(lens), true) = (fields.get("lens"), aperture / focus > MAX_APERTURE_IN_FOCUS) {
+        let message = format!(
+            "the aperture must be at most {MAX_APERTURE_IN_FOCUS:e} focus distances wide, not {:.1e}",
+            aperture / focus
+        );
+        fields.reader.error(codes::OUT_OF_RANGE, lens, message);
+    }
     CameraDesc {
         pose: None,
         vfov_deg: fields.read_or("vfov_deg", CameraDesc::VFOV_DEG, |r, n| {
             r.number(n, "`vfov_deg`", Domain::Between(0.0, 180.0))
         }),
-        aperture_radius: aperture.unwrap_or(CameraDesc::APERTURE_RADIUS),
-        focus_distance: focus.unwrap_or(default_focus),
+        aperture_radius: aperture,
+        focus_distance: focus,
     }
 }
 

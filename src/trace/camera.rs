@@ -34,7 +34,7 @@ pub(super) fn generate(wave: &mut Wave, camera: &Camera, sampler: Sampler, s: Im
             (Vec3::from(camera.right) * lx - Vec3::from(camera.down) * ly) * camera.aperture_radius;
         wave.paths.push(
             origin + shift,
-            unit(through * camera.focus_distance - shift),
+            unit(through - shift / camera.focus_distance),
             slot,
         );
     }
