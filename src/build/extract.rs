@@ -7,6 +7,7 @@ use crate::world::{
     AuthoringIndex, Camera, Emissive, Material, Normals, Parent, Pose, Shape, Spin,
 };
 use hecs::{Entity, World};
+use std::collections::{HashMap, HashSet};
 
 /// The world at one time, sorted by [`AuthoringIndex`].
 #[derive(Debug)]
@@ -67,6 +68,7 @@ pub(crate) fn extract(world: &World, pose_of: impl Fn(Entity) -> Pose) -> Extrac
     )>();
     let mut rows: Vec<_> = query.iter().collect();
     rows.sort_by_key(|row| row.1);
+    let moving = moving(world);
     let mut extracted = Extracted {
         camera: (Pose::default(), NO_CAMERA),
         spheres: Vec::new(),
@@ -89,7 +91,7 @@ pub(crate) fn extract(world: &World, pose_of: impl Fn(Entity) -> Pose) -> Extrac
                 look,
                 mesh,
                 normals,
-                moves: moves(world, entity),
+                moves: moving.contains(&entity),
             }),
             None => {}
         }
@@ -100,10 +102,22 @@ pub(crate) fn extract(world: &World, pose_of: impl Fn(Entity) -> Pose) -> Extrac
     extracted
 }
 
-fn moves(world: &World, entity: Entity) -> bool {
-    let parent = |e: &Entity| world.get::<&Parent>(*e).ok().map(|p| p.0);
-    // A cycle of parents, which scene files cannot have, ends with the number of entities.
-    std::iter::successors(Some(entity), parent)
-        .take(world.len() as usize)
-        .any(|e| world.satisfies::<&Spin>(e))
+/// Every entity that turns, or whose ancestor does.
+fn moving(world: &World) -> HashSet<Entity> {
+    let mut children: HashMap<Entity, Vec<Entity>> = HashMap::new();
+    for (entity, parent) in world.query::<(Entity, &Parent)>().iter() {
+        children.entry(parent.0).or_default().push(entity);
+    }
+    let mut next: Vec<Entity> = world
+        .query::<(Entity, &Spin)>()
+        .iter()
+        .map(|(entity, _)| entity)
+        .collect();
+    let mut moving = HashSet::new();
+    while let Some(entity) = next.pop() {
+        if moving.insert(entity) {
+            next.extend(children.get(&entity).into_iter().flatten());
+        }
+    }
+    moving
 }

@@ -205,8 +205,12 @@ impl Flattener<'_> {
         shared.materials.extend(&slots);
         shared.instances.push(instance);
         for prim in 0..mesh.triangle_count() {
-            let v = lights::placed(local.triangle(prim), &instance);
             let material = slots[slot(mesh, prim as u32)];
+            // Most meshes do not shine, and placing their triangles would cost more than all the rest.
+            if self.tables.materials[material.0 as usize].emission == [0.0; 3] {
+                continue;
+            }
+            let v = lights::placed(local.triangle(prim), &instance);
             self.lights.triangle(v, material, &self.tables.materials);
         }
     }

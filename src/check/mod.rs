@@ -5,6 +5,7 @@
 
 use crate::diag::{Diagnostic, codes};
 use crate::scene::{ColorDesc, EntityDesc, SceneDesc, ShapeDesc};
+use std::collections::BTreeSet;
 
 /// Samples per pixel above which a warning is due: at 512 × 512 pixels some hundred billion paths, a day or more.
 const MANY_SAMPLES: u32 = 1 << 18;
@@ -53,11 +54,15 @@ fn settings(desc: &SceneDesc) -> Vec<Diagnostic> {
 }
 
 fn unused_materials(desc: &SceneDesc) -> impl Iterator<Item = Diagnostic> {
-    let is_used = |i| desc.entities.iter().any(|e| e.value.material == Some(i));
+    let used: BTreeSet<usize> = desc
+        .entities
+        .iter()
+        .filter_map(|e| e.value.material)
+        .collect();
     desc.materials
         .iter()
         .enumerate()
-        .filter(move |&(i, _)| !is_used(i))
+        .filter(move |(i, _)| !used.contains(i))
         .map(|(_, material)| {
             let message = format!("no entity uses the material {:?}", material.name);
             warning(

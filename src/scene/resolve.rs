@@ -14,6 +14,10 @@ pub(super) fn resolve(
     materials: &[NamedMaterial],
 ) {
     let names = entity_names(reader, entities);
+    let mut material_names = BTreeMap::new();
+    for (i, material) in materials.iter().enumerate() {
+        material_names.entry(material.name.as_str()).or_insert(i);
+    }
     for entity in &mut *entities {
         if let Some((name, place)) = &entity.parent {
             entity.desc.parent = names.get(name).copied();
@@ -27,7 +31,7 @@ pub(super) fn resolve(
             }
         }
         if let Some((name, place)) = &entity.material {
-            entity.desc.material = materials.iter().position(|m| &m.name == name);
+            entity.desc.material = material_names.get(name.as_str()).copied();
             if entity.desc.material.is_none() {
                 let best = suggest(name, materials.iter().map(|m| m.name.as_str()));
                 unknown(reader, *place, &format!("material {name:?}"), best);
@@ -118,30 +122,43 @@ fn warn(reader: &Reader<'_>, code: &'static str, place: Node<'_>, message: &str)
 
 /// Reports each cycle of parents once, naming its members, and cuts it.
 fn break_cycles(reader: &Reader<'_>, entities: &mut [RawEntity<'_>]) {
-    let mut rooted = vec![false; entities.len()];
+    // The entity whose walk upwards came by; `None` where none did yet.
+    let mut seen: Vec<Option<usize>> = vec![None; entities.len()];
     for start in 0..entities.len() {
         let mut chain = Vec::new();
         let mut next = Some(start);
-        while let Some(i) = next.filter(|&i| !rooted[i]) {
-            if let Some(first) = chain.iter().position(|&c| c == i) {
-                report_cycle(reader, entities, &chain[first..]);
-                entities[i].desc.parent = None;
-                break;
+        while let Some(i) = next {
+            match seen[i] {
+                None => seen[i] = Some(start),
+                Some(walk) if walk == start => {
+                    let first = chain.iter().position(|&c| c == i).unwrap_or_default();
+                    report_cycle(reader, entities, &chain[first..]);
+                    entities[i].desc.parent = None;
+                    break;
+                }
+                Some(_) => break,
             }
             chain.push(i);
             next = entities[i].desc.parent;
         }
-        chain.into_iter().for_each(|i| rooted[i] = true);
     }
 }
 
 fn report_cycle(reader: &Reader<'_>, entities: &[RawEntity<'_>], cycle: &[usize]) {
+    /// A longer circle is told by its first members and their number.
+    const MAX_TOLD: usize = 10;
     let first = &entities[cycle[0]];
-    let chain: Vec<String> = cycle
-        .iter()
-        .chain(cycle.first())
-        .map(|&i| format!("{:?}", entities[i].desc.name.as_deref().unwrap_or_default()))
-        .collect();
+    let name = |i: &usize| {
+        format!(
+            "{:?}",
+            entities[*i].desc.name.as_deref().unwrap_or_default()
+        )
+    };
+    let mut chain: Vec<String> = cycle.iter().take(MAX_TOLD).map(name).collect();
+    if cycle.len() > MAX_TOLD {
+        chain.push(format!("{} more", cycle.len() - MAX_TOLD));
+    }
+    chain.push(name(&cycle[0]));
     let place = first
         .parent
         .as_ref()
