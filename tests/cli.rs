@@ -149,6 +149,10 @@ fn wrong_arguments_are_explained_and_cost_nothing() {
         (&["-o", "a.bmp"], &["a.bmp", ".png", ".exr"]),
         (&["-o", "a"], &["\"a\"", ".png"]),
         (&["--stats", "scene.ron"], &["scene.ron", ".json"]),
+        (
+            &["-o", "a.exr", "--aov", "depth,depth"],
+            &["depth", "twice"],
+        ),
         (&["--sp", "3"], &["--spp"]),
     ];
     for (flags, words) in cases {
@@ -200,7 +204,7 @@ fn unwritable_outputs_fail_before_rendering() {
     let folder = Folder::new("unwritable");
     fs::create_dir(folder.path("folder.png")).expect("writable");
     let start = Instant::now();
-    for output in ["no/such/a.png", "folder.png", "scene.ron/a.exr"] {
+    for output in ["no/such/a.png", "folder.png", "scene.ron/a.exr", "new.png/"] {
         // A minute of rendering if the check came late.
         let args = [
             "render",
@@ -242,6 +246,19 @@ fn a_render_leaves_its_file_its_path_and_a_summary() {
     assert_eq!(stats["spp"], 3);
     assert_eq!(stats["samples"], 40 * 24 * 3);
     assert_eq!(stats["stopped"], false);
+}
+
+#[test]
+fn a_scene_is_never_written_over() {
+    let folder = Folder::new("itself");
+    fs::copy(folder.path("scene.ron"), folder.path("room.png")).expect("writable");
+    for args in [
+        &["render", "room.png"][..],
+        &["render", "room.png", "-o", "./room.png"],
+    ] {
+        expect(&folder.run(args), 2, &["room.png", "the scene itself"]);
+    }
+    assert_eq!(text(&folder.bytes("room.png")), SCENE);
 }
 
 #[test]
@@ -380,6 +397,17 @@ fn time_ends_a_render_with_a_whole_picture() {
         &[],
     );
     assert!(folder.bytes("again.png") == folder.bytes("scene.png"));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_file_without_an_end_is_refused() {
+    let folder = Folder::new("endless");
+    expect(
+        &folder.run(&["check", "/dev/zero"]),
+        66,
+        &["/dev/zero", "1 GiB"],
+    );
 }
 
 #[cfg(unix)]

@@ -64,7 +64,15 @@ impl Output {
                 "write an EXR: -o FILE.exr",
             ));
         }
+        if let Some(twice) = (1..aovs.len()).find(|&i| aovs[..i].contains(&aovs[i])) {
+            let message = format!("--aov names {} twice", aovs[twice].name());
+            return Err(Failure::usage(message, "name it once"));
+        }
         if let Some(path) = &output.path {
+            if same_file(path, scene) {
+                let message = format!("\"{}\" is the scene itself", path.display());
+                return Err(Failure::usage(message, "write elsewhere: -o FILE.png"));
+            }
             check_writable(path)?;
         }
         Ok(output)
@@ -114,6 +122,11 @@ impl std::fmt::Display for Output {
 /// An output that cannot be written is an error now.
 pub(crate) fn check_writable(path: &Path) -> Result<(), Failure> {
     film::check_folder(path).map_err(|e| Failure::io(format!("\"{}\"", path.display()), &e))
+}
+
+fn same_file(a: &Path, b: &Path) -> bool {
+    let place = |path: &Path| path.canonicalize().ok();
+    place(a).is_some_and(|a| Some(a) == place(b))
 }
 
 fn format_of(path: &Path) -> Result<Format, Failure> {

@@ -26,7 +26,8 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
 /// # Errors
 /// The one that [`write_file`] would meet.
 pub fn check_folder(path: &Path) -> io::Result<()> {
-    if path.is_dir() {
+    let names_folder = path.as_os_str().as_encoded_bytes().ends_with(b"/");
+    if names_folder || path.is_dir() {
         return Err(io::Error::new(
             io::ErrorKind::IsADirectory,
             "it is a folder",

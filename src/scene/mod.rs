@@ -24,6 +24,7 @@ use crate::diag::{Diagnostic, Severity, codes};
 use entity::RawEntity;
 use layer::{LayerError, Node};
 use reader::{Fields, Reader};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use values::ColorRole;
@@ -67,7 +68,7 @@ pub enum LoadError {
 /// # Errors
 /// [`LoadError`]: the file is missing, unreadable, or not a scene.
 pub fn load(path: &Path) -> Result<Loaded, LoadError> {
-    let bytes = std::fs::read(path).map_err(|source| match source.kind() {
+    let bytes = read(path).map_err(|source| match source.kind() {
         std::io::ErrorKind::NotFound => LoadError::Missing(path.to_owned()),
         _ => LoadError::Unreadable {
             path: path.to_owned(),
@@ -87,6 +88,19 @@ pub fn load(path: &Path) -> Result<Loaded, LoadError> {
     parse(text, path)
         .map(|(desc, warnings)| Loaded { desc, warnings })
         .map_err(LoadError::Invalid)
+}
+
+/// The bytes of a scene file, which may be a pipe.
+fn read(path: &Path) -> std::io::Result<Vec<u8>> {
+    /// A device that never ends must not fill the memory. Millions of entities fit.
+    const MAX_BYTES: u64 = 1 << 30;
+    let mut bytes = Vec::new();
+    let file = std::fs::File::open(path)?;
+    file.take(MAX_BYTES + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(std::io::Error::other("it is longer than 1 GiB"));
+    }
+    Ok(bytes)
 }
 
 /// Reads and checks the text of a scene. `file` is what diagnostics name and what paths are relative to; it is not
