@@ -104,13 +104,26 @@ pub fn json(diagnostics: &[Diagnostic]) -> Value {
     diagnostics.iter().map(object).collect()
 }
 
+/// A message with its middle left out where it repeats something endless from the input.
+fn clipped(message: &str) -> String {
+    /// Characters kept at either end: more than any message has of its own.
+    const KEPT: usize = 200;
+    let count = message.chars().count();
+    if count <= 2 * KEPT {
+        return message.to_owned();
+    }
+    let start: String = message.chars().take(KEPT).collect();
+    let end: String = message.chars().skip(count - KEPT).collect();
+    format!("{start}...{end}")
+}
+
 fn group(diagnostic: &Diagnostic) -> Group<'_> {
     let level = match diagnostic.severity {
         Severity::Error => Level::ERROR,
         Severity::Warning => Level::WARNING,
     };
     let title = level
-        .primary_title(diagnostic.message.as_str())
+        .primary_title(clipped(&diagnostic.message))
         .id(diagnostic.code);
     let path = diagnostic
         .file
@@ -181,6 +194,14 @@ error[E900]: alone
         assert_eq!(render(&sample(), Style::Plain), wanted);
         assert!(render(&sample(), Style::Coloured).contains('\u{1b}'));
         assert_eq!(render(&[], Style::Plain), "");
+    }
+
+    #[test]
+    fn endless_names_do_not_drown_the_message() {
+        let message = format!("there is no material {:?}", "x".repeat(100_000));
+        let text = render(&[Diagnostic::error("E012", message)], Style::Plain);
+        assert!(text.starts_with("error[E012]: there is no material \"xxx"));
+        assert!(text.contains("x...x") && text.ends_with("x\"\n") && text.len() < 450);
     }
 
     #[test]
