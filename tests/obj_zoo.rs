@@ -1,9 +1,12 @@
-//! Every OBJ of a collection of real files loads as another loader read it, or is refused with file and cause.
+//! Every OBJ of a collection of real files loads as another loader read it and renders, or is refused with file and
+//! cause.
 //!
 //! Runs where `LUXEL_DATA` names a folder with `ORACLE.json` and `zoo/`; says that it skips elsewhere.
 
 use luxel::asset::{Loader, Mesh};
 use luxel::math::DVec3;
+use luxel::render::{Control, Renderer, Settings};
+use luxel::{scene, world};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -94,9 +97,45 @@ fn compare(name: &str, path: &Path, expected: &Value) -> Result<(), String> {
     }
     let same = compare_box(mesh, expected);
     match OTHER_BOX.contains(&name) {
-        true if same.is_ok() => Err("the boxes agree after all".into()),
-        true => Ok(()),
-        false => same,
+        true if same.is_ok() => return Err("the boxes agree after all".into()),
+        true => (),
+        false => same?,
+    }
+    render(path, bounds(mesh))
+}
+
+/// A white sky, and a camera that sees the whole box: something is hit, and every pixel is finite.
+fn render(path: &Path, [min, max]: [DVec3; 2]) -> Result<(), String> {
+    let center = 0.5 * (min + max);
+    // Off every axis and plane that a mesh may lie in.
+    let eye = center + DVec3::new(0.6, 0.5, 1.0) * (max - min).length();
+    let name = path
+        .file_name()
+        .and_then(|name| name.to_str())
+        .unwrap_or_default();
+    let [at, look_at] = [eye, center].map(|p| format!("({:e}, {:e}, {:e})", p.x, p.y, p.z));
+    let text = format!(
+        "Scene(version: 1, camera: (at: {at}, look_at: {look_at}), render: (size: (16, 16), spp: 2),
+         background: Linear(1, 1, 1), entities: [(shape: Mesh({name:?}))])"
+    );
+    let (desc, _) = scene::parse(&text, &path.with_file_name("zoo.ron"))
+        .map_err(|found| format!("scene: {}", found[0]))?;
+    let spawned = world::spawn(&desc).map_err(|found| format!("world: {}", found[0]))?;
+    let mut settings = Settings::of_scene(&desc);
+    settings.trace.features = true;
+    let rendered = Renderer::new(&desc, spawned.world, &spawned.assets, settings)
+        .map_err(|e| e.to_string())?
+        .render(0, &Control::default());
+    let film = rendered.film;
+    let finite = film.radiance().iter().flatten().all(|c| c.is_finite());
+    let hits = film
+        .depth()
+        .iter()
+        .filter(|depth| depth.is_finite())
+        .count();
+    match (film.total_non_finite(), finite, hits) {
+        (0, true, 1..) => Ok(()),
+        seen => Err(format!("(not finite, all finite, hits) {seen:?}")),
     }
 }
 
@@ -109,14 +148,21 @@ fn uv_triangles(mesh: &Mesh) -> u64 {
     mesh.uvs.chunks(3).filter(complete).count() as u64
 }
 
-fn compare_box(mesh: &Mesh, expected: &Value) -> Result<(), String> {
+/// The box of the corners, not of the vertices that no face uses.
+fn bounds(mesh: &Mesh) -> [DVec3; 2] {
     let used = || {
         mesh.corners
             .iter()
             .map(|&corner| mesh.positions[corner as usize])
     };
-    let min = used().fold(DVec3::INFINITY, DVec3::min);
-    let max = used().fold(DVec3::NEG_INFINITY, DVec3::max);
+    [
+        used().fold(DVec3::INFINITY, DVec3::min),
+        used().fold(DVec3::NEG_INFINITY, DVec3::max),
+    ]
+}
+
+fn compare_box(mesh: &Mesh, expected: &Value) -> Result<(), String> {
+    let [min, max] = bounds(mesh);
     for (found, side) in [(min, "min"), (max, "max")] {
         for (axis, found) in found.to_array().into_iter().enumerate() {
             let Some(expected) = expected[side][axis].as_f64() else {
