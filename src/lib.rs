@@ -61,6 +61,7 @@
 //! * `world::Transform` holds its rotation as a matrix: quarter turns through a quaternion are not exact, and a full turn
 //!   must give the rest pose to the bit. `world::Pose` keeps the root's translation apart until the build has subtracted its
 //!   origin, so that a translated scene gives the same bits.
+//! * `ior` lies between 0.01 and 100, beyond which f32 cannot tell transmission from nothing.
 //! * A sphere counts as a wall by its *diameter*, size against size, when the extent of the scene is found.
 //! * Which traversal runs is read off the buffers, not off [`flat::Needs`], whose `triangles` also counts those of instances.
 //! * A triangle hit whose t is smaller than its error bound is not refused but decided by its sign in f64: refusing lost one

@@ -28,7 +28,7 @@ pub struct Spawned {
 ///
 /// # Errors
 /// Everything that is wrong with files, each at the place in the scene that names the file or at its own line; textured
-/// materials on meshes without texture coordinates; entities out of reach.
+/// materials on meshes without texture coordinates; entities out of reach. The warnings follow the errors.
 pub fn spawn(desc: &SceneDesc) -> Result<Spawned, Vec<Diagnostic>> {
     let mut files = Files::new(desc);
     let materials: Vec<Option<Material>> = desc
@@ -82,6 +82,7 @@ pub fn spawn(desc: &SceneDesc) -> Result<Spawned, Vec<Diagnostic>> {
             warnings,
         })
     } else {
+        errors.extend(warnings);
         Err(errors)
     }
 }
