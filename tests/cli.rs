@@ -524,10 +524,34 @@ fn noise_is_measured_and_judged() {
         expect(&output, 1, &["is above"]);
         assert!(text(&output.stdout).contains("reference  b.exr"));
     }
-    let args = ["compare", "a.exr", "b.exr", "--mask", "peers", "--json"];
-    let masked: serde_json::Value =
-        serde_json::from_slice(&folder.run(&args).stdout).expect("JSON");
-    assert!(masked["pixels"].as_u64() < value["pixels"].as_u64());
+}
+
+#[test]
+fn the_mask_leaves_lamps_and_their_rims_out() {
+    let folder = Folder::new("compare-mask");
+    let write = |name: &str, lamp: f32| {
+        let pixel = |x, y| {
+            let light = if (x, y) == (6, 6) { lamp } else { 0.5 };
+            (light, light, light)
+        };
+        exr::prelude::write_rgb_file(folder.path(name), 12, 12, pixel).expect("writable");
+    };
+    write("image.exr", 100.0);
+    write("reference.exr", 9.0);
+    let measured = |args: &[&str]| -> serde_json::Value {
+        let args = [&["compare", "image.exr", "reference.exr", "--json"], args].concat();
+        serde_json::from_slice(&folder.run(&args).stdout).expect("JSON")
+    };
+    let (whole, masked) = (measured(&[]), measured(&["--mask", "peers"]));
+    assert_eq!(
+        (&whole["pixels"], &masked["pixels"]),
+        (&144.into(), &95.into())
+    );
+    assert_eq!(masked["mask"], "peers");
+    // 91 off in one pixel of 144.
+    let rmse = whole["rmse"].as_f64().expect("a number");
+    assert!((rmse - 91.0 / 12.0).abs() < 1e-12, "{rmse}");
+    assert_eq!(masked["rmse"], 0.0);
 }
 
 #[test]

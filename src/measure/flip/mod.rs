@@ -1,7 +1,7 @@
 //! LDR-FLIP: the difference that a person sees who alternates between two pictures on a screen.
 //!
 //! Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström, Fairchild 2020: "FLIP: A Difference Evaluator for Alternating
-//! Images". 0 is no difference, 1 the largest. A colour pipeline ([`colour`]; §4.1 of the paper) blurs both pictures as
+//! Images". 0 is no difference, 1 the largest. A colour pipeline (§4.1 of the paper) blurs both pictures as
 //! the eye does at the distance of the observer and measures how far their colours are apart; a feature pipeline
 //! (§4.2) finds edges and points that are in one of them only, and raises the colour error there.
 //!
