@@ -16,8 +16,8 @@ pub(super) struct Plane {
 /// Weights of a line of pixels, an odd number, about the middle one.
 type Kernel = Vec<f64>;
 
-/// A contrast sensitivity as a sum of two Gaussians: pairs (a, b) of a √(π/b) e^(−π² d² / b), d in degrees (Table 1 of
-/// the paper).
+/// A contrast sensitivity as a sum of two Gaussians: pairs (a, b) of a √(π/b) e^(−π² d² / b), d in degrees, with
+/// the parameters of the paper.
 type Sensitivity = [(f64, f64); 2];
 
 const ACHROMATIC: Sensitivity = [(1.0, 0.0047), (0.0, 1e-5)];

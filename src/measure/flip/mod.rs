@@ -1,9 +1,9 @@
 //! LDR-FLIP: the difference that a person sees who alternates between two pictures on a screen.
 //!
 //! Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström, Fairchild 2020: "FLIP: A Difference Evaluator for Alternating
-//! Images". 0 is no difference, 1 the largest. A colour pipeline (§4.1 of the paper) blurs both pictures as
-//! the eye does at the distance of the observer and measures how far their colours are apart; a feature pipeline
-//! (§4.2) finds edges and points that are in one of them only, and raises the colour error there.
+//! Images". 0 is no difference, 1 the largest. A colour pipeline blurs both pictures as the eye does at the distance of
+//! the observer and measures how far their colours are apart; a feature pipeline finds edges and points that are in one
+//! of them only, and raises the colour error there.
 //!
 //! The screen shows light clamped to [0, 1]. It is sRGB-encoded on the way to the screen and decoded by it, which
 //! cancels, so the images stay linear here. Deliberately absent: HDR-FLIP, with its sweep of exposures.
@@ -107,7 +107,7 @@ impl ColourScale {
         }
     }
 
-    /// Compresses a distance, then spreads most of the distances over most of the range (§4.1.3).
+    /// Compresses a distance, then spreads most of the distances over most of the range.
     fn error(&self, distance: f64) -> f64 {
         let compressed = math::pow(distance, COLOUR_EXPONENT);
         let knee = KNEE * self.largest;
