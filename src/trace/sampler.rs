@@ -57,10 +57,11 @@ pub(super) fn sample_pair(sampler: Sampler, key: u32, sample: u32, pair: Pair) -
     let key = mix(key ^ pair.row().wrapping_mul(0x9e37_79b9));
     let (x, y) = match sampler {
         Sampler::Sobol => {
-            let index = scramble(sample, key);
+            // The index shuffled; reversed, it is the first dimension.
+            let index = laine_karras(sample.reverse_bits(), key).reverse_bits();
             (
-                scramble_reversed(index, mix(key ^ 1)),
-                scramble(sobol_second(index), mix(key ^ 2)),
+                laine_karras(index, mix(key ^ 1)).reverse_bits(),
+                laine_karras(sobol_second_reversed(index), mix(key ^ 2)).reverse_bits(),
             )
         }
         Sampler::Independent => {
@@ -87,19 +88,8 @@ fn mix(mut x: u32) -> u32 {
     x ^ (x >> 16)
 }
 
-/// Owen scrambling of the bits of x, from the highest down: every bit is flipped by a hash of those above it.
-#[inline(always)]
-fn scramble(x: u32, seed: u32) -> u32 {
-    laine_karras(x.reverse_bits(), seed).reverse_bits()
-}
-
-/// [`scramble`] of the bit reversal of x: the first Sobol dimension is that reversal.
-#[inline(always)]
-fn scramble_reversed(x: u32, seed: u32) -> u32 {
-    laine_karras(x, seed).reverse_bits()
-}
-
-/// Every bit is changed by lower bits only (Laine and Karras 2011, constants of Burley 2020, listing 3).
+/// Owen scrambling, which flips every bit by a hash of those above it, on reversed bits: every bit is changed by lower bits
+/// only (Laine and Karras 2011, constants of Burley 2020, listing 3).
 #[inline(always)]
 fn laine_karras(mut x: u32, seed: u32) -> u32 {
     x = x.wrapping_add(seed);
@@ -109,15 +99,16 @@ fn laine_karras(mut x: u32, seed: u32) -> u32 {
     x ^ x.wrapping_mul(0x8d22_f6e6)
 }
 
-/// The second Sobol dimension: the generator matrix is Pascal's triangle modulo 2, applied by five doubling steps.
+/// The second Sobol dimension, bits reversed: the generator matrix is Pascal's triangle modulo 2, applied by five doubling
+/// steps.
 #[inline(always)]
-fn sobol_second(index: u32) -> u32 {
-    let mut x = index.reverse_bits();
-    x ^= (x & 0x0000_ffff) << 16;
-    x ^= (x & 0x00ff_00ff) << 8;
-    x ^= (x & 0x0f0f_0f0f) << 4;
-    x ^= (x & 0x3333_3333) << 2;
-    x ^ ((x & 0x5555_5555) << 1)
+fn sobol_second_reversed(index: u32) -> u32 {
+    let mut x = index;
+    x ^= (x >> 16) & 0x0000_ffff;
+    x ^= (x >> 8) & 0x00ff_00ff;
+    x ^= (x >> 4) & 0x0f0f_0f0f;
+    x ^= (x >> 2) & 0x3333_3333;
+    x ^ ((x >> 1) & 0x5555_5555)
 }
 
 #[cfg(test)]
@@ -140,7 +131,11 @@ mod tests {
     #[test]
     fn second_dimension_is_sobols() {
         for i in (0..4096).chain((0..2000).map(mix)) {
-            assert_eq!(sobol_second(i), sobol_by_definition(i), "{i}");
+            assert_eq!(
+                sobol_second_reversed(i).reverse_bits(),
+                sobol_by_definition(i),
+                "{i}"
+            );
         }
     }
 

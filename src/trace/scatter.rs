@@ -188,12 +188,16 @@ pub(super) fn sample_lights(wave: &mut Wave, bounce: Bounce) {
 
 fn light_from(wave: &Wave, bounce: Bounce, slot: usize, origin: Vec3) -> Option<LightSample> {
     let (key, sample) = (wave.slots.key[slot], wave.slots.sample[slot]);
-    let [choice, _] = sample_pair(
-        bounce.options.sampler,
-        key,
-        sample,
-        Pair::Choice(bounce.index),
-    );
+    // One light needs no choice.
+    let choice = match bounce.scene.lights.len() {
+        1 => 0.0,
+        _ => sample_pair(
+            bounce.options.sampler,
+            key,
+            sample,
+            Pair::Choice(bounce.index),
+        )[0],
+    };
     let u = sample_pair(
         bounce.options.sampler,
         key,
