@@ -25,8 +25,7 @@ pub use spheres::{SphereBlock, Spheres};
 pub use texture::{FilterMode, Texture, WrapMode};
 pub use triangles::{TriangleBlock, Triangles};
 
-/// Lanes of a storage block. Blocks of 8 beat blocks of 4 and nine arrays in the layout measurement; issue 3 measures
-/// it again for whole walks.
+/// Lanes of a storage block: one AVX2 register holds a coordinate of all eight.
 pub const BLOCK: usize = 8;
 
 /// The map from authored (world) space to scene units, computed once per scene from its rest pose.
