@@ -1,7 +1,5 @@
-//! The `luxel` command: arguments in, pictures and words out. Everything it does is a call of the library.
-
-mod cli;
+//! The `luxel` command. Everything it does is in the library.
 
 fn main() -> std::process::ExitCode {
-    cli::run()
+    luxel::cli::run()
 }

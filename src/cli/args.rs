@@ -7,9 +7,6 @@ use crate::trace::isa::{Isa, Level};
 use crate::trace::{Fresnel, Sampler};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
-use luxel::film::Aov;
-use luxel::trace::isa::{Isa, Level};
-use luxel::trace::{Fresnel, Sampler};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -100,7 +97,7 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_enum, default_value_t = AccelArg::Bvh)]
     pub(crate) accel: AccelArg,
     /// Side of a tile in pixels
-    #[arg(long, value_name = "N", default_value_t = luxel::render::Settings::DEFAULT_TILE, value_parser = value_parser!(u32).range(1..=4096))]
+    #[arg(long, value_name = "N", default_value_t = crate::render::Settings::DEFAULT_TILE, value_parser = value_parser!(u32).range(1..=4096))]
     pub(crate) tile: u32,
     /// More images in the EXR file, separated by commas
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = aov_parser())]
@@ -255,6 +252,16 @@ pub(crate) enum AccelArg {
     Bvh,
 }
 
+impl From<AccelArg> for Accel {
+    fn from(arg: AccelArg) -> Accel {
+        match arg {
+            AccelArg::Brute => Accel::Brute,
+            AccelArg::Box => Accel::Box,
+            AccelArg::Bvh => Accel::Bvh,
+        }
+    }
+}
+
 fn aov_parser() -> impl TypedValueParser<Value = Aov> {
     PossibleValuesParser::new(Aov::ALL.map(Aov::name)).map(|name| {
         let known = Aov::ALL.into_iter().find(|aov| aov.name() == name);
@@ -346,7 +353,9 @@ mod tests {
         assert_eq!(parse_time("500ms"), Ok(Duration::from_millis(500)));
         assert_eq!(parse_time("2m"), Ok(Duration::from_secs(120)));
         assert_eq!(parse_time("1.5h"), Ok(Duration::from_secs(5400)));
-        for bad in ["", "30", "s", "-1s", "0s", "NaNs", "infs", "1e99h", "3 s x", "5d", "1e400s"] {
+        for bad in [
+            "", "30", "s", "-1s", "0s", "NaNs", "infs", "1e99h", "3 s x", "5d", "1e400s",
+        ] {
             assert!(parse_time(bad).is_err(), "{bad}");
         }
     }
@@ -354,7 +363,17 @@ mod tests {
     #[test]
     fn sizes_have_two_sides() {
         assert_eq!(parse_size("640x360"), Ok((640, 360)));
-        for bad in ["", "640", "0x5", "5x0", "-1x5", "640x", "99999x1", "32768x32768", "1x1x1"] {
+        for bad in [
+            "",
+            "640",
+            "0x5",
+            "5x0",
+            "-1x5",
+            "640x",
+            "99999x1",
+            "32768x32768",
+            "1x1x1",
+        ] {
             assert!(parse_size(bad).is_err(), "{bad}");
         }
     }

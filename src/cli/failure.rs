@@ -1,7 +1,7 @@
 //! Why a command ended without its result, and the exit code that says so to scripts.
 
 use super::{diagnostics, say};
-use luxel::diag::Diagnostic;
+use crate::diag::Diagnostic;
 use std::fmt;
 use std::path::Path;
 
@@ -53,13 +53,10 @@ impl Failure {
     }
 
     /// A file named on the command line cannot be read.
-    pub(crate) fn no_input(path: &Path, cause: &std::io::Error) -> Failure {
+    pub(crate) fn no_input(path: &Path, cause: &dyn fmt::Display) -> Failure {
         Failure {
             code: code::NO_INPUT,
-            what: What::Message(
-                format!("cannot read \"{}\": {cause}", path.display()),
-                None,
-            ),
+            what: What::Message(format!("cannot read \"{}\": {cause}", path.display()), None),
         }
     }
 
@@ -95,6 +92,17 @@ impl Failure {
         }
     }
 
+    /// The system gives no threads.
+    pub(crate) fn threads(cause: &dyn fmt::Display) -> Failure {
+        Failure {
+            code: code::IO,
+            what: What::Message(
+                format!("cannot start the worker threads: {cause}"),
+                Some("ask for fewer: --threads 1".to_owned()),
+            ),
+        }
+    }
+
     /// Stopped by a signal.
     pub(crate) fn stopped() -> Failure {
         Failure {
@@ -103,11 +111,19 @@ impl Failure {
         }
     }
 
-    /// The scene is wrong, and what is wrong has been printed.
-    pub(crate) fn scene_said() -> Failure {
+    /// The diagnostics, if it is a scene that is wrong.
+    pub(crate) fn diagnostics(&self) -> Option<&[Diagnostic]> {
+        match &self.what {
+            What::Diagnostics(all) => Some(all),
+            _ => None,
+        }
+    }
+
+    /// The same end, but everything has been said.
+    pub(crate) fn said(self) -> Failure {
         Failure {
-            code: code::SCENE,
             what: What::Said,
+            ..self
         }
     }
 
@@ -120,7 +136,8 @@ impl Failure {
                     say(&format!("  = help: {hint}"));
                 }
             }
-            What::Diagnostics(all) => diagnostics::print(all),
+            // If nobody listens, so be it.
+            What::Diagnostics(all) => drop(diagnostics::print(all)),
             What::Said => {}
         }
     }

@@ -2,7 +2,7 @@
 
 use super::failure::code;
 use super::say;
-use luxel::render::Control;
+use crate::render::Control;
 use std::sync::Arc;
 
 /// Lets the signals stop `control`. If the handler cannot be set, the signals keep their usual, harsher meaning.

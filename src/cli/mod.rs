@@ -1,4 +1,7 @@
-//! The command line: arguments, progress, printing, exit codes.
+//! The command line: arguments, progress, printing, exit codes. Only the binary calls it.
+//!
+//! Results go to stdout (the path written, JSON), talk goes to stderr. Deliberately absent: anything that decides what
+//! a picture looks like.
 
 mod args;
 mod check;

@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use super::print_result;
-use luxel::film::{self, Aov, EncodeError, Film, Metadata};
+use crate::film::{self, Aov, EncodeError, Film, Metadata};
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 

@@ -1,10 +1,10 @@
 //! A progress bar, on a terminal only.
 
+use crate::render::Control;
 use indicatif::{ProgressBar, ProgressStyle};
-use luxel::render::Control;
 use std::io::IsTerminal;
-use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::sync::Arc;
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 

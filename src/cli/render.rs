@@ -5,12 +5,13 @@ use super::failure::Failure;
 use super::output::{Encoding, Format, Output, check_writable};
 use super::progress::Progress;
 use super::stats::Account;
-use super::{interrupt, load, print_result, say};
-use luxel::film;
-use luxel::math;
-use luxel::render::{Control, Rendering, Settings, metadata, scene_hash};
-use luxel::trace::isa::Isa;
-use luxel::trace::TraceOptions;
+use super::{diagnostics, interrupt, load, print_result, say};
+use crate::film;
+use crate::math;
+use crate::render::{Control, Rendering, Settings};
+use crate::scene::SceneDesc;
+use crate::trace::TraceOptions;
+use crate::trace::isa::Isa;
 use std::ffi::OsStr;
 use std::path::Path;
 use std::sync::Arc;
@@ -25,19 +26,21 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
     }
     let control = Arc::new(Control::default());
     interrupt::listen(&control);
-    let mut loaded = load::scene(&args.scene)?;
-    load::print_warnings(&loaded);
+    let (loaded, warnings) = load::scene(&args.scene)?;
+    // If nobody listens on stderr, so be it.
+    let _ = diagnostics::print(&warnings);
     let settings = settings(args, &loaded.desc);
+    let time = settings.time;
+    let mut renderer = loaded.renderer(settings)?;
     let load = start.elapsed();
     let rendering = {
-        let _bar = Progress::start(&control, settings.time);
-        loaded.render(&settings, &control, start)?
+        let _bar = Progress::start(&control, time);
+        renderer.render(args.frame, &control)
     };
-    let hash = scene_hash(&loaded.desc, &loaded.store);
     let mut encoding = Encoding {
         gain: math::pow(2.0, args.exposure),
         aovs: &args.aov,
-        metadata: metadata(&hash, &rendering.scene, &settings, rendering.stats.spp),
+        metadata: rendering.metadata.clone(),
     };
     if output.format == Format::Png {
         encoding.metadata.push("exposure", args.exposure);
@@ -53,7 +56,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
         stats: rendering.stats,
         load,
         write: writing.elapsed(),
-        isa: settings.trace.isa.level().to_string(),
+        isa: isa(args).level().to_string(),
     };
     tell(args, &output, &account)
 }
@@ -88,7 +91,9 @@ fn write_partial(output: &Output, rendering: &Rendering, encoding: &Encoding<'_>
         return failure;
     }
     let mean = samples as f64 / rendering.film.pixels() as f64;
-    say(&format!("stopped; {partial} has {mean:.1} samples per pixel"));
+    say(&format!(
+        "stopped; {partial} has {mean:.1} samples per pixel"
+    ));
     if let Err(failure) = print_result(format!("{partial}\n").as_bytes()) {
         return failure;
     }
@@ -113,11 +118,15 @@ fn settings(args: &RenderArgs, desc: &SceneDesc) -> Settings {
             mis: args.mis.is_on(),
             roulette: args.roulette.is_on(),
             fresnel: args.fresnel.into(),
-            isa: args.isa.unwrap_or_else(Isa::best),
+            isa: isa(args),
             features: args.aov.iter().any(|aov| aov.is_feature()),
             ids: args.aov.iter().any(|aov| aov.is_id()),
         },
     }
+}
+
+fn isa(args: &RenderArgs) -> Isa {
+    args.isa.unwrap_or_else(Isa::best)
 }
 
 /// Other suffixes are refused, so that `--stats room.ron` does not cost anyone a scene.

@@ -1,8 +1,8 @@
 //! What a render cost, as a line for people and as JSON for scripts.
 
 use super::progress::words;
-use luxel::film::Film;
-use luxel::render::Stats;
+use crate::film::Film;
+use crate::render::Stats;
 use serde_json::json;
 use std::time::Duration;
 

@@ -4,7 +4,7 @@
 //! rises, so that comparison can be made before it instead of after: [`Encoder`] holds the 255 linear values at which
 //! the code changes, and no power function is called per pixel.
 
-use crate::math;
+use crate::math::srgb_to_linear;
 
 /// Steps between codes.
 const MAX_CODE: f64 = 255.0;
@@ -21,7 +21,7 @@ impl Encoder {
     #[must_use]
     pub fn new() -> Encoder {
         Encoder {
-            thresholds: std::array::from_fn(|i| decode((i as f64 + 0.5) / MAX_CODE)),
+            thresholds: std::array::from_fn(|i| srgb_to_linear((i as f64 + 0.5) / MAX_CODE)),
         }
     }
 
@@ -36,16 +36,6 @@ impl Encoder {
 impl Default for Encoder {
     fn default() -> Self {
         Encoder::new()
-    }
-}
-
-/// An encoded value in [0, 1] to linear light.
-#[must_use]
-pub fn decode(encoded: f64) -> f64 {
-    if encoded <= 0.04045 {
-        encoded / 12.92
-    } else {
-        math::pow((encoded + 0.055) / 1.055, 2.4)
     }
 }
 
@@ -79,7 +69,7 @@ mod tests {
     fn every_byte_survives_a_round_trip() {
         let encoder = Encoder::new();
         for k in 0..=255u8 {
-            assert_eq!(encoder.encode(decode(f64::from(k) / 255.0)), k);
+            assert_eq!(encoder.encode(srgb_to_linear(f64::from(k) / 255.0)), k);
         }
     }
 

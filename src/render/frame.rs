@@ -9,7 +9,7 @@ use crate::build::{BuildOptions, BuildTimes, SceneBuilder};
 use crate::film::{Film, Metadata, Planes, Window};
 use crate::flat::{FlatScene, PixelFilter};
 use crate::scene::{ColorDesc, FilterDesc, SceneDesc};
-use crate::trace::{Rect, TileSums, trace_tile};
+use crate::trace::{Rect, TileSums, Tracer};
 use crate::world::pose;
 use hecs::World;
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
@@ -109,8 +109,9 @@ impl Renderer {
         let start = Instant::now();
         let passes = Passes::new(settings.spp, deadline);
         let spp = self.pool.install(|| {
-            tiles::run(&mut tiles, passes, control, |rect, samples, sums| {
-                trace_tile(scene, &settings.trace, rect, samples, sums);
+            tiles::run(&mut tiles, passes, control, || {
+                let mut tracer = Tracer::new(scene, &settings.trace);
+                move |rect, samples, sums: &mut _| tracer.trace_tile(rect, samples, sums)
             })
         });
         let mut stats = Stats {

@@ -3,8 +3,8 @@
 use super::Control;
 use super::passes::Passes;
 use crate::trace::{Rect, TileSums};
-use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
 
 /// Samples traced between two looks at [`Control::stopped`]: a tile's worth is some tens of milliseconds.
 const SAMPLES_PER_LOOK: u32 = 8;
@@ -27,35 +27,55 @@ pub(super) fn cut(width: u32, height: u32, side: u32) -> Vec<Tile> {
         .collect()
 }
 
-/// Calls `trace` for every tile and every pass, on the threads of the current pool, and returns the samples per pixel
-/// of the passes that were completed. Within a tile the calls are in the order of the sample index, with the same sums.
-pub(super) fn run<F>(tiles: &mut [Tile], mut passes: Passes, control: &Control, trace: F) -> u32
+/// Traces every tile in every pass on the threads of the current pool, each of which makes one worker per pass, and
+/// returns the samples per pixel of the passes that were completed. Within a tile the calls are in the order of the
+/// sample index, with the same sums, whoever makes them.
+pub(super) fn run<W>(
+    tiles: &mut [Tile],
+    mut passes: Passes,
+    control: &Control,
+    worker: impl Fn() -> W + Sync,
+) -> u32
 where
-    F: Fn(Rect, Range<u32>, &mut TileSums) + Sync,
+    W: FnMut(Rect, Range<u32>, &mut TileSums),
 {
     let mut complete = 0;
     while let Some(pass) = passes.next_pass() {
-        tiles
-            .par_iter_mut()
-            .with_max_len(1)
-            .for_each(|(rect, sums)| {
-                let pixels = u64::from(rect.width) * u64::from(rect.height);
-                for first in pass.clone().step_by(SAMPLES_PER_LOOK as usize) {
-                    if control.stopped() {
-                        return;
-                    }
-                    let samples = first..pass.end.min(first + SAMPLES_PER_LOOK);
-                    let count = u64::from(samples.end - samples.start);
+        // One lock per tile and pass.
+        let queue = Mutex::new(tiles.iter_mut());
+        rayon::broadcast(|_| {
+            let mut trace = worker();
+            while let Some((rect, sums)) = next(&queue) {
+                trace_pass(*rect, pass.clone(), control, |samples| {
                     trace(*rect, samples, sums);
-                    control.add(pixels * count);
-                }
-            });
+                });
+            }
+        });
         if control.stopped() {
             break;
         }
         complete = pass.end;
     }
     complete
+}
+
+fn next<'a>(queue: &Mutex<std::slice::IterMut<'a, Tile>>) -> Option<&'a mut Tile> {
+    // Taking the next of an iterator cannot leave it half done.
+    let mut queue = queue.lock().unwrap_or_else(PoisonError::into_inner);
+    queue.next()
+}
+
+/// One tile's samples of a pass, in pieces, unless the render was stopped.
+fn trace_pass(rect: Rect, pass: Range<u32>, control: &Control, mut trace: impl FnMut(Range<u32>)) {
+    let pixels = u64::from(rect.width) * u64::from(rect.height);
+    for first in pass.clone().step_by(SAMPLES_PER_LOOK as usize) {
+        if control.stopped() {
+            return;
+        }
+        let end = pass.end.min(first + SAMPLES_PER_LOOK);
+        trace(first..end);
+        control.add(pixels * u64::from(end - first));
+    }
 }
 
 #[cfg(test)]
@@ -87,7 +107,7 @@ mod tests {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let complete = pool
             .expect("threads")
-            .install(|| run(&mut tiles, Passes::new(spp, None), &control, fake));
+            .install(|| run(&mut tiles, Passes::new(spp, None), &control, || fake));
         assert_eq!(complete, spp);
         assert_eq!(control.progress().0, u64::from(width * height * spp));
         assemble(width, height, tiles)
@@ -108,13 +128,13 @@ mod tests {
     fn a_stop_ends_early_and_keeps_what_there_is() {
         let mut tiles = cut(16, 16, 8);
         let control = Control::default();
-        let trace = |rect, samples: Range<u32>, sums: &mut TileSums| {
+        let trace = |rect: Rect, samples: Range<u32>, sums: &mut TileSums| {
             if samples.start >= 4 {
                 control.stop();
             }
             fake(rect, samples, sums);
         };
-        let complete = run(&mut tiles, Passes::new(1000, None), &control, trace);
+        let complete = run(&mut tiles, Passes::new(1000, None), &control, || trace);
         assert_eq!(complete, 4);
         let film = assemble(16, 16, tiles);
         assert!(film.planes().count.iter().all(|&n| (4..16).contains(&n)));

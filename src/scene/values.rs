@@ -110,9 +110,10 @@ impl<'a> Reader<'a> {
                 self.wrong_type(node, name, "a whole number")
             }
             (_, Ok(x)) => {
-                let range = match high {
-                    u32::MAX if x < f64::from(low) => format!("{low} or above"),
-                    _ => format!("from {low} to {high}"),
+                let range = if x < f64::from(low) {
+                    format!("{low} or above")
+                } else {
+                    format!("{high} or below")
                 };
                 let message = format!("{name} must be {range}, not {}", node.text);
                 self.error(codes::OUT_OF_RANGE, node, message);

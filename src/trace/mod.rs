@@ -10,10 +10,17 @@ mod camera;
 pub mod fresnel;
 pub mod isa;
 pub mod kernels;
+mod light;
 pub mod options;
 mod path;
 pub mod rays;
+mod sampler;
+mod scatter;
 pub mod spawn;
+mod surface;
+#[cfg(test)]
+mod test_support;
+pub mod texture;
 pub mod tile;
 mod vector;
 mod wave;
@@ -24,5 +31,3 @@ pub use options::{Fresnel, Sampler, TraceOptions};
 pub use path::Tracer;
 pub use rays::{Hits, Rays};
 pub use tile::{Rect, TileSums};
-pub(crate) fn closest_hit(_: &crate::flat::FlatScene, _: Isa, _: &Rays, _: &mut Hits) {}
-pub(crate) fn occluded(_: &crate::flat::FlatScene, _: Isa, _: &Rays, _: &mut Vec<bool>) {}

@@ -42,7 +42,10 @@ pub(super) fn surface(wave: &mut Wave, scene: &FlatScene) {
 fn point(scene: &FlatScene, paths: &Paths, hits: &Hits, i: usize) -> Point {
     let (prim, instance) = (hits.prim[i], hits.instance[i]);
     if prim & Spheres::TAG != 0 {
-        let ray = [get(&paths.rays.origin, i).to_array(), get(&paths.rays.dir, i).to_array()];
+        let ray = [
+            get(&paths.rays.origin, i).to_array(),
+            get(&paths.rays.dir, i).to_array(),
+        ];
         return on_sphere(scene, ray, hits.t[i], (prim & !Spheres::TAG) as usize);
     }
     let weights = [hits.u[i], hits.v[i]];
@@ -81,7 +84,11 @@ fn on_triangle(geometry: &Geometry, prim: u32, [u, v]: [f32; 2]) -> Point {
 /// A shading normal as a unit vector on the side of the geometric normal; that one where it has no direction.
 fn facing(ns: Vec3, ng: Vec3) -> Vec3 {
     let length = ns.length_squared();
-    let ns = if length > 0.0 && length.is_finite() { unit(ns) } else { ng };
+    let ns = if length > 0.0 && length.is_finite() {
+        unit(ns)
+    } else {
+        ng
+    };
     if ns.dot(ng) < 0.0 { -ns } else { ns }
 }
 
@@ -104,7 +111,11 @@ fn on_sphere(scene: &FlatScene, ray: [[f32; 3]; 2], t: f32, s: usize) -> Point {
     let spheres = &scene.spheres;
     let (position, outward) = spawn::sphere_point(ray, t, spheres.center[s], spheres.radius[s]);
     let outward = Vec3::from(outward);
-    let ng = if spheres.inverted[s] { -outward } else { outward };
+    let ng = if spheres.inverted[s] {
+        -outward
+    } else {
+        outward
+    };
     Point {
         position: Vec3::from(position),
         ng,

@@ -1,0 +1,60 @@
+//! A scene file to what the renderer takes: description, world, files.
+
+use super::failure::Failure;
+use crate::asset::AssetStore;
+use crate::check::check;
+use crate::diag::Diagnostic;
+use crate::render::{Renderer, Settings};
+use crate::scene::{self, LoadError, SceneDesc};
+use crate::world;
+use hecs::World;
+use std::path::Path;
+
+/// A scene with its world and files.
+pub(crate) struct Loaded {
+    /// The description.
+    pub(crate) desc: SceneDesc,
+    /// Its entities.
+    world: World,
+    /// Its files.
+    assets: AssetStore,
+}
+
+/// Reads a scene and every file that it names. The warnings come with it, the errors instead of it.
+pub(crate) fn scene(path: &Path) -> Result<(Loaded, Vec<Diagnostic>), Failure> {
+    let read = scene::load(path).map_err(|e| refuse(path, e))?;
+    let mut found = read.warnings;
+    found.extend(check(&read.desc));
+    match world::spawn(&read.desc) {
+        Ok(spawned) => {
+            found.extend(spawned.warnings);
+            let loaded = Loaded {
+                desc: read.desc,
+                world: spawned.world,
+                assets: spawned.assets,
+            };
+            Ok((loaded, found))
+        }
+        Err(errors) => {
+            found.extend(errors);
+            Err(Failure::scene(found))
+        }
+    }
+}
+
+/// Why a scene file named on the command line was not read.
+fn refuse(path: &Path, error: LoadError) -> Failure {
+    match error {
+        LoadError::Missing(_) => Failure::no_input(path, &"no such file"),
+        LoadError::Unreadable { source, .. } => Failure::no_input(path, &source),
+        LoadError::Invalid(all) => Failure::scene(all),
+    }
+}
+
+impl Loaded {
+    /// Starts the renderer's threads.
+    pub(crate) fn renderer(self, settings: Settings) -> Result<Renderer, Failure> {
+        Renderer::new(&self.desc, self.world, &self.assets, settings)
+            .map_err(|e| Failure::threads(&e))
+    }
+}
