@@ -71,6 +71,8 @@
 //! * tobj gets cleaned text in groups of faces with equal attributes, after a scan of our own that resolves every index, so
 //!   that it has nothing to fill in; MTL files are read by a reader of our own. Triangles without area are dropped on
 //!   reading, so that the `prim` channel counts those that are kept.
+//! * The types of [`scene`] are plain, without serde: the reader cuts the text layer by layer and reads every field by
+//!   itself, so that several errors of one entity are told at once, each at its place.
 //! * The `gltf` crate joins the dependencies with the first scene that uses it.
 
 pub mod asset;

@@ -57,7 +57,7 @@ pub struct Instance {
     pub materials: u32,
     /// The entity.
     pub object: ObjectId,
-    /// The transform mirrors: geometric normals from counter-clockwise vertices are negated.
+    /// The transform mirrors: in the scene, counter-clockwise vertices run clockwise about the outward normal.
     pub mirrored: bool,
 }
 
