@@ -61,7 +61,8 @@ fn render(
     let desc = luxel::scene::load(&path)?.desc;
     let mut settings = Settings::of_scene(&desc);
     change(&mut settings);
-    let spawned = luxel::world::spawn(&desc).map_err(|errors| errors[0].to_string())?;
+    let spawned = luxel::world::spawn(&desc, luxel::asset::Loader::new())
+        .map_err(|errors| errors[0].to_string())?;
     let mut renderer = Renderer::new(&desc, spawned.world, &spawned.assets, settings.clone())?;
     let rendering = renderer.render(0, &Control::default());
     Ok((rendering, start.elapsed().as_secs_f64(), settings))

@@ -73,7 +73,9 @@
 //!   reading, so that the `prim` channel counts those that are kept.
 //! * The types of [`scene`] are plain, without serde: the reader cuts the text layer by layer and reads every field by
 //!   itself, so that several errors of one entity are told at once, each at its place.
-//! * The `gltf` crate joins the dependencies with the first scene that uses it.
+//! * `gltf` on an entity also takes a long form, `(path: "room.glb", lights: false)`, and `Mesh` one that names a mesh of
+//!   a glTF file, `Mesh(path: "room.glb", mesh: 3)`: what `convert` writes and `turntable` needs.
+//! * `world::AuthoringIndex` is a pair, entity and node, since one entity of a scene may stand for a file's many.
 
 pub mod asset;
 pub mod build;

@@ -471,7 +471,7 @@ fn the_scene_of_the_readme_reads() {
     let read = luxel::scene::parse(scene, Path::new("scenes/readme.ron"));
     let (desc, warnings) = read.expect("no errors");
     assert!(warnings.is_empty(), "{warnings:?}");
-    luxel::world::spawn(&desc).expect("its files are there");
+    luxel::world::spawn(&desc, luxel::asset::Loader::new()).expect("its files are there");
 }
 
 /// Two renders of the scene with other noise: `a.exr`, `b.exr`, and `a.png`.

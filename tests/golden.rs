@@ -27,7 +27,7 @@ fn scenes() -> Vec<PathBuf> {
 
 fn picture(path: &Path, isa: Isa) -> Vec<[f32; 3]> {
     let desc = scene::load(path).expect("a scene").desc;
-    let spawned = world::spawn(&desc).expect("its files");
+    let spawned = world::spawn(&desc, luxel::asset::Loader::new()).expect("its files");
     let mut settings = Settings::of_scene(&desc);
     settings.trace.isa = isa;
     let renderer = Renderer::new(&desc, spawned.world, &spawned.assets, settings);

@@ -120,7 +120,8 @@ fn render(path: &Path, [min, max]: [DVec3; 2]) -> Result<(), String> {
     );
     let (desc, _) = scene::parse(&text, &path.with_file_name("zoo.ron"))
         .map_err(|found| format!("scene: {}", found[0]))?;
-    let spawned = world::spawn(&desc).map_err(|found| format!("world: {}", found[0]))?;
+    let spawned = world::spawn(&desc, luxel::asset::Loader::new())
+        .map_err(|found| format!("world: {}", found[0]))?;
     let mut settings = Settings::of_scene(&desc);
     settings.trace.features = true;
     let rendered = Renderer::new(&desc, spawned.world, &spawned.assets, settings)

@@ -42,7 +42,7 @@ fn file(name: &str, text: &str) {
 fn try_spawn(text: &str) -> Result<Spawned, Vec<luxel::diag::Diagnostic>> {
     file("tetra.obj", TETRA);
     let (desc, _) = luxel::scene::parse(text, &folder().join("scene.ron")).unwrap();
-    world::spawn(&desc)
+    world::spawn(&desc, luxel::asset::Loader::new())
 }
 
 fn spawn(text: &str) -> Spawned {

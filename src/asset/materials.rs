@@ -3,7 +3,7 @@
 use super::loader::Loader;
 use super::paths::{beside, library_names, most_similar, same_name_beside, similar_file};
 use super::scan::{Named, Scan, at_line};
-use super::{MeshMaterial, TextureId, codes, mtl, text};
+use super::{MeshMaterial, TextureId, TextureUse, codes, mtl, text};
 use crate::diag::Diagnostic;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -195,10 +195,9 @@ impl Loader {
             );
         }
         Ok(MeshMaterial {
-            name: name.clone(),
-            color: color.map(|c| c.min(1.0)),
-            texture,
+            texture: texture.map(TextureUse::plain),
             emission: definition.emission,
+            ..MeshMaterial::diffuse(name, color.map(|c| c.min(1.0)))
         })
     }
 

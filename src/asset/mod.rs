@@ -26,7 +26,7 @@ mod triangulate;
 
 pub use loader::Loader;
 
-use crate::math::{DVec2, DVec3};
+use crate::math::{DAffine3, DVec2, DVec3};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -37,6 +37,10 @@ pub struct MeshId(pub u32);
 /// A texture of the [`AssetStore`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct TextureId(pub u32);
+
+/// A glTF file of the [`AssetStore`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ModelId(pub u32);
 
 /// An indexed triangle mesh in its own space, in file order.
 ///
@@ -54,6 +58,11 @@ pub struct Mesh {
     /// Texture coordinates of each corner, v up; `None` for a triangle whose face has none. Empty when the file has
     /// none at all, else length `3 * triangles`.
     pub uvs: Vec<Option<DVec2>>,
+    /// The second set of texture coordinates, like `uvs`. Empty unless a material of the mesh reads it.
+    pub uvs1: Vec<Option<DVec2>>,
+    /// Linear colour of each corner, which multiplies the colour of materials with
+    /// [`MeshMaterial::vertex_colors`]. Empty when the file has none, else length `3 * triangles`.
+    pub colors: Vec<[f32; 3]>,
     /// Normals of each corner as in the file, unit length; `None` where the file gives none. Empty when the file has
     /// none at all, else length `3 * triangles`.
     pub normals: Vec<Option<DVec3>>,
@@ -71,17 +80,200 @@ impl Mesh {
     }
 }
 
-/// A material of a mesh file (MTL): what luxel reads of it.
+/// A material of a mesh file (MTL, glTF): what luxel reads of it.
 #[derive(Clone, Debug)]
 pub struct MeshMaterial {
     /// Its name in the file.
     pub name: String,
-    /// Linear diffuse colour (`Kd`), as a factor of `texture` where there is one.
+    /// How it scatters.
+    pub scattering: Scattering,
+    /// Linear colour (`Kd`, `baseColorFactor`), as a factor of `texture` where there is one.
     pub color: [f64; 3],
-    /// Colour texture (`map_Kd`).
-    pub texture: Option<TextureId>,
-    /// Linear emitted radiance (`Ke`).
+    /// Colour texture (`map_Kd`, `baseColorTexture`).
+    pub texture: Option<TextureUse>,
+    /// Whether [`Mesh::colors`] multiply the colour.
+    pub vertex_colors: bool,
+    /// Linear emitted radiance (`Ke`, `emissiveFactor` times its strength), as a factor of `emission_texture`.
     pub emission: [f64; 3],
+    /// Texture of the emission (`map_Ke`, `emissiveTexture`).
+    pub emission_texture: Option<TextureUse>,
+    /// How much of the surface is there.
+    pub opacity: Opacity,
+}
+
+impl MeshMaterial {
+    /// An opaque diffuse material of one colour.
+    #[must_use]
+    pub fn diffuse(name: impl Into<String>, color: [f64; 3]) -> MeshMaterial {
+        MeshMaterial {
+            name: name.into(),
+            scattering: Scattering::Diffuse,
+            color,
+            texture: None,
+            vertex_colors: false,
+            emission: [0.0; 3],
+            emission_texture: None,
+            opacity: Opacity::OPAQUE,
+        }
+    }
+}
+
+/// The kind of a material.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Scattering {
+    /// Not at all: a pure emitter.
+    Nothing,
+    /// Two-sided Lambert.
+    Diffuse,
+    /// Perfect mirror.
+    Mirror,
+    /// Smooth dielectric.
+    Glass {
+        /// Inside over outside.
+        ior: f64,
+    },
+    /// Smooth dielectric coat over Lambert.
+    Plastic {
+        /// Of the coat.
+        ior: f64,
+    },
+    /// Smooth metal.
+    Metal,
+}
+
+/// How much of a surface is there: `factor` times the alpha of `texture`, read by `mode`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Opacity {
+    /// 0 to 1.
+    pub factor: f64,
+    /// Whose alpha multiplies the factor; a texture without alpha counts as 1.
+    pub texture: Option<TextureUse>,
+    /// What the product means.
+    pub mode: AlphaMode,
+}
+
+impl Opacity {
+    /// All of it.
+    pub const OPAQUE: Opacity = Opacity {
+        factor: 1.0,
+        texture: None,
+        mode: AlphaMode::Opaque,
+    };
+}
+
+/// What opacity means (glTF 2.0, section 3.9.4).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AlphaMode {
+    /// Nothing: all of the surface is there.
+    Opaque,
+    /// There where opacity is at least the cutoff, not there elsewhere.
+    Mask {
+        /// 0 to 1.
+        cutoff: f64,
+    },
+    /// Of so many rays the opacity meets the surface; the others go straight on.
+    Blend,
+}
+
+/// A texture as a material of a file reads it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TextureUse {
+    /// Which.
+    pub texture: TextureId,
+    /// 0: [`Mesh::uvs`]; 1: [`Mesh::uvs1`].
+    pub uv_set: u8,
+    /// Row-major 2 × 3 matrix of texture coordinates (v up) to those that are looked up; `None` is the identity.
+    pub transform: Option<[f64; 6]>,
+    /// Outside [0, 1], along u and v.
+    pub wrap: [Wrap; 2],
+    /// Between texels.
+    pub filter: Filter,
+}
+
+impl TextureUse {
+    /// The first set of coordinates as they are, tiled and smooth: all that MTL knows.
+    #[must_use]
+    pub fn plain(texture: TextureId) -> TextureUse {
+        TextureUse {
+            texture,
+            uv_set: 0,
+            transform: None,
+            wrap: [Wrap::default(); 2],
+            filter: Filter::default(),
+        }
+    }
+}
+
+/// A light without extent; it shines from its place along −Z.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Light {
+    /// Equally into every direction.
+    Point {
+        /// Radiant intensity in W·sr⁻¹, linear RGB.
+        intensity: [f64; 3],
+    },
+    /// Into a cone. Between the angles the intensity falls off as the square of (cos θ − cos outer) /
+    /// (cos inner − cos outer), the recommendation of KHR_lights_punctual.
+    Spot {
+        /// Along the axis, in W·sr⁻¹, linear RGB.
+        intensity: [f64; 3],
+        /// Angle from the axis within which it is full, in degrees.
+        inner_deg: f64,
+        /// Angle from the axis beyond which it is nothing, in degrees.
+        outer_deg: f64,
+    },
+    /// From infinitely far away.
+    Sun {
+        /// Irradiance of a surface that faces it in W·m⁻², linear RGB.
+        irradiance: [f64; 3],
+    },
+}
+
+/// A glTF file: the nodes of its default scene.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// The file.
+    pub path: PathBuf,
+    /// Nodes in the order of a depth-first walk: parents before their children.
+    pub nodes: Vec<ModelNode>,
+    /// Meshes by their index in the file; `None` for those that no node of the default scene uses, or that have no
+    /// triangle.
+    pub meshes: Vec<Option<MeshId>>,
+}
+
+/// A node of a [`Model`].
+#[derive(Clone, Debug)]
+pub struct ModelNode {
+    /// Its name in the file.
+    pub name: Option<String>,
+    /// Its index in the file's `nodes`.
+    pub index: u32,
+    /// Index into [`Model::nodes`].
+    pub parent: Option<usize>,
+    /// In the parent's frame.
+    pub transform: NodeTransform,
+    /// Index into [`Model::meshes`].
+    pub mesh: Option<usize>,
+    /// Vertical field of view in degrees of the perspective camera here, which looks along −Z.
+    pub camera_vfov_deg: Option<f64>,
+    /// The light here, along −Z.
+    pub light: Option<Light>,
+}
+
+/// Where a node is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NodeTransform {
+    /// T · R · S.
+    Parts {
+        /// In the parent's units.
+        translate: DVec3,
+        /// Unit quaternion x, y, z, w.
+        rotate: [f64; 4],
+        /// Along the node's own axes.
+        scale: DVec3,
+    },
+    /// An affine map as authored.
+    Matrix(DAffine3),
 }
 
 /// Wrap mode of a texture outside [0, 1].
@@ -118,6 +310,8 @@ pub struct Texture {
     /// sRGB-encoded R, G, B of each texel, row by row from the top; length `3 * width * height`. Decoding to linear
     /// happens by table when a texel is read, so that filtering is linear.
     pub texels: Arc<[u8]>,
+    /// Alpha of each texel, linear, in the same order; `None` where the image has none, or is opaque everywhere.
+    pub alpha: Option<Arc<[u8]>>,
 }
 
 /// Everything that files gave, immutable.
@@ -127,6 +321,8 @@ pub struct AssetStore {
     pub meshes: Vec<Arc<Mesh>>,
     /// Behind [`TextureId`].
     pub textures: Vec<Arc<Texture>>,
+    /// Behind [`ModelId`].
+    pub models: Vec<Arc<Model>>,
     /// Behind [`AssetStore::hash`].
     content_hash: [u8; 32],
     /// Behind [`AssetStore::bytes`].
@@ -157,5 +353,11 @@ impl AssetStore {
     #[must_use]
     pub fn texture(&self, id: TextureId) -> &Arc<Texture> {
         &self.textures[id.0 as usize]
+    }
+
+    /// The glTF file of an id of this store.
+    #[must_use]
+    pub fn model(&self, id: ModelId) -> &Arc<Model> {
+        &self.models[id.0 as usize]
     }
 }

@@ -57,5 +57,6 @@ pub(super) fn decode(path: &Path, bytes: &[u8]) -> Result<Texture, Diagnostic> {
         width,
         height,
         texels: image.into_raw().into(),
+        alpha: None,
     })
 }

@@ -76,7 +76,7 @@ pub(crate) fn extract(world: &World, pose_of: impl Fn(Entity) -> Pose) -> Extrac
     };
     for (entity, index, shape, material, emissive, camera) in rows {
         let look = Look {
-            object: ObjectId(index.0),
+            object: ObjectId(index.entity),
             pose: pose_of(entity),
             material: material.copied(),
             emission: emissive.map(|e| e.0),

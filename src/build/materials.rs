@@ -48,7 +48,10 @@ impl<'a> Tables<'a> {
                 let (scatter, ior) = scattering(material.scattering);
                 (scatter, self.color(material.color), ior)
             }
-            (None, Some(file)) => (Scatter::Diffuse, self.file_color(file), NO_IOR),
+            (None, Some(file)) => {
+                let (scatter, ior) = scattering(file.scattering);
+                (scatter, self.file_color(file), ior)
+            }
             (None, None) if look.emission.is_some() => {
                 (Scatter::Nothing, constant([0.0; 3]), NO_IOR)
             }
@@ -109,8 +112,8 @@ impl<'a> Tables<'a> {
     fn file_color(&mut self, file: &MeshMaterial) -> ColorSource {
         match file.texture {
             None => constant(file.color),
-            Some(texture) => ColorSource::Texture {
-                texture: self.texture(texture, asset::Wrap::default(), asset::Filter::default()),
+            Some(of) => ColorSource::Texture {
+                texture: self.texture(of.texture, of.wrap[0], of.filter),
                 factor: file.color.map(|c| c as f32),
             },
         }
@@ -149,6 +152,7 @@ impl<'a> Tables<'a> {
 
 fn scattering(scattering: Scattering) -> (Scatter, f64) {
     match scattering {
+        Scattering::Nothing => (Scatter::Nothing, NO_IOR),
         Scattering::Diffuse => (Scatter::Diffuse, NO_IOR),
         Scattering::Mirror => (Scatter::Mirror, NO_IOR),
         Scattering::Glass { ior } => (Scatter::Glass, ior),

@@ -74,13 +74,14 @@ fn unused_materials(desc: &SceneDesc) -> impl Iterator<Item = Diagnostic> {
         })
 }
 
-/// Nothing shines. A mesh without a material may, by its file.
+/// Nothing shines. A mesh without a material may, by its file, and so may a glTF file.
 fn darkness(desc: &SceneDesc) -> Option<Diagnostic> {
     let may_shine = |e: &EntityDesc| {
-        let by_file = matches!(e.shape, Some(ShapeDesc::Mesh(_)))
+        let by_file = matches!(e.shape, Some(ShapeDesc::Mesh { .. }))
             && e.material.is_none()
             && e.emissive.is_none();
-        by_file || e.emissive.is_some_and(|radiance| radiance != [0.0; 3])
+        let by_light = e.light.is_some() || e.gltf.is_some();
+        by_file || by_light || e.emissive.is_some_and(|radiance| radiance != [0.0; 3])
     };
     let dark = desc.background == ColorDesc::Linear([0.0; 3])
         && !desc.entities.iter().any(|e| may_shine(&e.value));

@@ -55,13 +55,13 @@ impl Subject<'_> {
         let instance = self.scene.instances.first().map(|i| self.name(i.object));
         let smooth = self.entity(|i| {
             let entity = &desc.entities[i].value;
-            matches!(entity.shape, Some(ShapeDesc::Mesh(_)))
+            matches!(entity.shape, Some(ShapeDesc::Mesh { .. }))
                 && entity.normals != Some(NormalsDesc::Flat)
         });
         let scatter = |wanted: Scatter| self.material(|m| m.scatter == wanted);
         let texture = self.material(|m| matches!(m.color, ColorSource::Texture { .. }));
         let light = self.material(|m| m.emission != [0.0; 3]);
-        let triangles = shape(|s| matches!(s, ShapeDesc::Mesh(_)));
+        let triangles = shape(|s| matches!(s, ShapeDesc::Mesh { .. }));
         let place = |what: &str| Some(what.to_owned());
         vec![
             ("triangles", needs.triangles, triangles),

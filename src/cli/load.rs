@@ -1,7 +1,7 @@
 //! A scene file to what the renderer takes: description, world, files.
 
 use super::failure::Failure;
-use crate::asset::AssetStore;
+use crate::asset::{AssetStore, Loader};
 use crate::check::check;
 use crate::diag::Diagnostic;
 use crate::render::{Renderer, Settings};
@@ -25,7 +25,7 @@ pub(crate) fn scene(path: &Path) -> Result<(Loaded, Vec<Diagnostic>), Failure> {
     let read = scene::load(path).map_err(|e| refuse(path, e))?;
     let mut found = read.warnings;
     found.extend(check(&read.desc));
-    match world::spawn(&read.desc) {
+    match world::spawn(&read.desc, Loader::new()) {
         Ok(spawned) => {
             found.extend(spawned.warnings);
             let loaded = Loaded {

@@ -3,9 +3,11 @@
 use super::layer::Node;
 use super::motion;
 use super::reader::{Fields, Reader};
-use super::schema::{EntityDesc, NormalsDesc, RotateDesc, ShapeDesc, SpinDesc, TransformDesc};
-use super::settings;
+use super::schema::{
+    EntityDesc, GltfDesc, NormalsDesc, RotateDesc, ShapeDesc, SpinDesc, TransformDesc,
+};
 use super::values::{Domain, MAX_RADIANCE};
+use super::{light, settings};
 use crate::diag::codes;
 
 /// Every component, in the order of the format's description.
@@ -38,7 +40,7 @@ pub(super) struct RawEntity<'a> {
     pub(super) emissive: Option<Node<'a>>,
     pub(super) normals: Option<Node<'a>>,
     /// The file's nodes stand for shapes.
-    pub(super) has_file: bool,
+    pub(super) gltf: Option<Node<'a>>,
 }
 
 pub(super) fn entity<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<RawEntity<'a>> {
@@ -56,6 +58,8 @@ pub(super) fn entity<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<RawEntit
         emissive: fields.read_if("emissive", emissive),
         normals: fields.read_if("normals", normals),
         camera: fields.read_if("camera", settings::entity_camera),
+        light: fields.read_if("light", light::light),
+        gltf: fields.read_if("gltf", gltf),
     };
     Some(RawEntity {
         desc,
@@ -67,15 +71,14 @@ pub(super) fn entity<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<RawEntit
         camera: fields.get("camera"),
         emissive: fields.get("emissive"),
         normals: fields.get("normals"),
-        has_file: fields.get("gltf").is_some(),
+        gltf: fields.get("gltf"),
     })
 }
 
 fn shape<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<ShapeDesc> {
     let (variant, body) = reader.variant(node, "`shape`", &["Sphere", "Mesh"])?;
     if variant == "Mesh" {
-        let path = reader.single(body, "Mesh", "Mesh(\"file\")")?;
-        return reader.path(path, "the mesh").map(ShapeDesc::Mesh);
+        return mesh(reader, body);
     }
     let fields = Fields::read(reader, body, "`Sphere`", &["radius", "inverted"])?;
     let radius = fields.require("radius", |r, n| r.number(n, "`radius`", Domain::Positive));
@@ -84,6 +87,34 @@ fn shape<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<ShapeDesc> {
         radius: radius?,
         inverted,
     })
+}
+
+/// `("cat.obj")` or `(path: "room.glb", mesh: 3)`.
+fn mesh<'a>(reader: &Reader<'a>, body: Node<'a>) -> Option<ShapeDesc> {
+    if body.fields().is_ok_and(|fields| !fields.is_empty()) {
+        let fields = Fields::read(reader, body, "`Mesh`", &["path", "mesh"])?;
+        let path = fields.require("path", |r, n| r.path(n, "the mesh"));
+        let mesh = fields.read_if("mesh", |r, n| r.whole(n, "`mesh`", 0, u32::MAX));
+        return Some(ShapeDesc::Mesh { path: path?, mesh });
+    }
+    let path = reader.single(body, "Mesh", "Mesh(\"file\")")?;
+    let path = reader.path(path, "the mesh")?;
+    Some(ShapeDesc::Mesh { path, mesh: None })
+}
+
+/// `"room.glb"` or `(path: "room.glb", lights: false)`.
+fn gltf<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<GltfDesc> {
+    if node.text.starts_with('(') {
+        let fields = Fields::read(reader, node, "`gltf`", &["path", "lights"])?;
+        let path = fields.require("path", |r, n| r.path(n, "the glTF file"));
+        let lights = fields.read_or("lights", true, |r, n| r.truth(n, "`lights`"));
+        return Some(GltfDesc {
+            path: path?,
+            lights,
+        });
+    }
+    let path = reader.path(node, "`gltf`")?;
+    Some(GltfDesc { path, lights: true })
 }
 
 fn transform<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<TransformDesc> {

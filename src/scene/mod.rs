@@ -2,12 +2,13 @@
 //!
 //! Enters: a RON file. Leaves: a [`SceneDesc`] whose names resolve and whose numbers are finite and in range, or every
 //! error at once. Stages: `layer` cuts the text with its places, `reader` and `values` know types and ranges,
-//! `settings`, `material`, `entity` and `motion` know the format, `resolve` what concerns several parts.
+//! `settings`, `material`, `entity`, `light` and `motion` know the format, `resolve` what concerns several parts.
 //!
 //! Deliberately absent: hecs, pixels, the contents of asset files.
 
 mod entity;
 mod layer;
+mod light;
 mod material;
 mod motion;
 mod reader;

@@ -84,7 +84,7 @@ fn unknown(reader: &Reader<'_>, place: Node<'_>, what: &str, best: Option<&str>)
 
 /// Components that need another one.
 fn check_components(reader: &Reader<'_>, entity: &RawEntity<'_>) {
-    let shapeless = entity.shape.is_none() && !entity.has_file;
+    let shapeless = entity.shape.is_none() && entity.gltf.is_none();
     if let (Some(place), true) = (entity.emissive, shapeless) {
         reader.error_hint(
             codes::DARK_EMITTER,
@@ -101,13 +101,21 @@ fn check_components(reader: &Reader<'_>, entity: &RawEntity<'_>) {
             "`material` has no effect on an entity without a `shape`",
         );
     }
-    let is_mesh = entity.has_file || entity.shape.is_some_and(|s| s.text.starts_with("Mesh"));
+    let is_mesh = entity.gltf.is_some() || entity.shape.is_some_and(|s| s.text.starts_with("Mesh"));
     if let (Some(place), false) = (entity.normals, is_mesh) {
         warn(
             reader,
             codes::IDLE_NORMALS,
             place,
             "`normals` has no effect on an entity without a mesh",
+        );
+    }
+    if let (Some(place), Some(_)) = (entity.gltf, entity.shape) {
+        reader.error_hint(
+            codes::MISPLACED,
+            place,
+            "an entity has either a `shape` or a `gltf`",
+            "give the file an entity of its own, with this one as its `parent`",
         );
     }
 }
@@ -215,6 +223,10 @@ pub(super) fn check_cameras(
         .into_iter()
         .chain(entities.iter().filter_map(|e| e.camera));
     let Some(first) = cameras.next() else {
+        // A glTF file may bring one, which is known when it is read.
+        if entities.iter().any(|e| e.gltf.is_some()) {
+            return;
+        }
         let hint = "add `camera: (at: (0, 0, 5), look_at: (0, 0, 0))` at top level";
         let missing = Diagnostic::error(codes::NO_CAMERA, "the scene has no camera");
         reader.report(missing.in_file(reader.file).hint(hint));

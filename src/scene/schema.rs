@@ -279,6 +279,10 @@ pub struct EntityDesc {
     pub normals: Option<NormalsDesc>,
     /// A camera at this entity, looking along its −Z.
     pub camera: Option<CameraDesc>,
+    /// A light at this entity, along its −Z.
+    pub light: Option<LightDesc>,
+    /// The nodes of a glTF file under this entity; `material`, `normals` and `emissive` concern all of them.
+    pub gltf: Option<GltfDesc>,
 }
 
 /// A shape.
@@ -291,8 +295,47 @@ pub enum ShapeDesc {
         /// Normals inward. Default false.
         inverted: bool,
     },
-    /// An OBJ file.
-    Mesh(Placed<String>),
+    /// `Mesh("cat.obj")`, or `Mesh(path: "room.glb", mesh: 3)`.
+    Mesh {
+        /// Relative to the scene's folder, as written.
+        path: Placed<String>,
+        /// Index into the `meshes` of a glTF file; an OBJ file has none.
+        mesh: Option<u32>,
+    },
+}
+
+/// `gltf: "room.glb"`, or `gltf: (path: "room.glb", lights: false)`: the nodes of a file's default scene, under the
+/// entity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GltfDesc {
+    /// Relative to the scene's folder, as written.
+    pub path: Placed<String>,
+    /// Whether the file's punctual lights shine. Default true.
+    pub lights: bool,
+}
+
+/// `light: ..`: a light without extent, at the entity's origin, along its −Z.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LightDesc {
+    /// Shines equally into every direction.
+    Point {
+        /// Radiant intensity in W·sr⁻¹, linear RGB.
+        intensity: [f64; 3],
+    },
+    /// Shines into a cone.
+    Spot {
+        /// Radiant intensity along the axis in W·sr⁻¹, linear RGB.
+        intensity: [f64; 3],
+        /// Angle from the axis within which it is full, in degrees; from 0 to below `outer_deg`.
+        inner_deg: f64,
+        /// Angle from the axis beyond which it is nothing, in degrees; at most 90.
+        outer_deg: f64,
+    },
+    /// Shines from infinitely far away.
+    Sun {
+        /// Irradiance of a surface that faces it in W·m⁻², linear RGB.
+        irradiance: [f64; 3],
+    },
 }
 
 /// `transform: (translate, rotate, scale)`.

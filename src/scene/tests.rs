@@ -100,7 +100,10 @@ fn the_sample_reads_as_written() {
     let wanted = EntityDesc {
         name: Some("cat".to_owned()),
         parent: Some(3),
-        shape: Some(ShapeDesc::Mesh(mesh)),
+        shape: Some(ShapeDesc::Mesh {
+            path: mesh,
+            mesh: None,
+        }),
         material: Some(1),
         transform: TransformDesc {
             translate: [0.0; 3],

@@ -1,6 +1,7 @@
 //! The components of an entity. All but [`Pose`] are authored; `pose` writes that one.
 
 use crate::asset::{Filter, MeshId, TextureId, Wrap};
+pub use crate::asset::{Light, Scattering};
 use crate::math::{DAffine3, DMat3, DVec3};
 use hecs::Entity;
 
@@ -73,27 +74,6 @@ pub struct Material {
     pub color: Color,
 }
 
-/// The kind of a material.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Scattering {
-    /// Two-sided Lambert.
-    Diffuse,
-    /// Perfect mirror.
-    Mirror,
-    /// Smooth dielectric.
-    Glass {
-        /// Inside over outside.
-        ior: f64,
-    },
-    /// Smooth dielectric coat over Lambert.
-    Plastic {
-        /// Of the coat.
-        ior: f64,
-    },
-    /// Smooth metal.
-    Metal,
-}
-
 /// Where a colour comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Color {
@@ -140,9 +120,14 @@ pub struct Spin {
     pub pivot: Option<DVec3>,
 }
 
-/// Index of the entity in the scene file. A camera at top level comes after all entities.
+/// The order of a scene: first by entity, then by node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct AuthoringIndex(pub u32);
+pub struct AuthoringIndex {
+    /// Index of the entity in the scene file. A camera at top level comes after all entities.
+    pub entity: u32,
+    /// 0 for the entity itself; for the nodes of its glTF file, 1 and up in the order of the walk.
+    pub node: u32,
+}
 
 /// The entity's name in the scene file.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,6 +1,7 @@
 //! Files that a scene names: loaded once each, their errors at the place that names them.
 
-use crate::asset::{AssetStore, Loader, MeshId, TextureId};
+use super::codes;
+use crate::asset::{AssetStore, Loader, MeshId, ModelId, TextureId};
 use crate::diag::{Diagnostic, Span};
 use crate::scene::{Placed, SceneDesc};
 use std::collections::BTreeSet;
@@ -16,18 +17,59 @@ pub(super) struct Files<'a> {
 }
 
 impl<'a> Files<'a> {
-    pub(super) fn new(desc: &'a SceneDesc) -> Files<'a> {
+    pub(super) fn new(desc: &'a SceneDesc, loader: Loader) -> Files<'a> {
         Files {
             desc,
-            loader: Loader::new(),
+            loader,
             failed: BTreeSet::new(),
             errors: Vec::new(),
         }
     }
 
-    pub(super) fn mesh(&mut self, named: &Placed<String>) -> Option<MeshId> {
+    /// A mesh: of an OBJ file, or one of a glTF file.
+    pub(super) fn mesh(&mut self, named: &Placed<String>, index: Option<u32>) -> Option<MeshId> {
         let path = self.path(named);
-        let loaded = self.loader.mesh(&path);
+        match (is_gltf(&path), index) {
+            (false, None) => {
+                let loaded = self.loader.mesh(&path);
+                self.keep(loaded, path, named)
+            }
+            (true, Some(index)) => {
+                let model = self.model(named)?;
+                let model = self.loader.loaded_model(model);
+                let mesh = model.meshes.get(index as usize).copied().flatten();
+                if mesh.is_none() {
+                    let says = format!(
+                        "{} has no mesh {index} with triangles in its default scene",
+                        path.display()
+                    );
+                    self.refuse(named, codes::NO_SUCH_MESH, &says);
+                }
+                mesh
+            }
+            (true, None) => {
+                let says = "a glTF file holds a whole scene";
+                let hint = format!(
+                    "place it as a component of its own, `gltf: {0:?}`, or name one of its meshes, \
+                     `Mesh(path: {0:?}, mesh: 0)`",
+                    named.value
+                );
+                self.refuse_with(named, codes::WHOLE_SCENE, says, hint);
+                None
+            }
+            (false, Some(_)) => {
+                let says = "`mesh` counts the meshes of a glTF file, and this is none";
+                let hint = format!("write `Mesh({:?})`", named.value);
+                self.refuse_with(named, codes::NO_SUCH_MESH, says, hint);
+                None
+            }
+        }
+    }
+
+    /// A glTF file.
+    pub(super) fn model(&mut self, named: &Placed<String>) -> Option<ModelId> {
+        let path = self.path(named);
+        let loaded = self.loader.model(&path);
         self.keep(loaded, path, named)
     }
 
@@ -39,12 +81,25 @@ impl<'a> Files<'a> {
 
     /// Reports something about the place that names a file.
     pub(super) fn refuse(&mut self, named: &Placed<String>, code: &'static str, says: &str) {
-        let error = Diagnostic::error(code, says).in_file(&self.desc.file).at(
-            &self.desc.source,
-            named.at,
-            named.len,
-        );
+        let error = self.at(named, Diagnostic::error(code, says));
         self.errors.push(error);
+    }
+
+    fn refuse_with(
+        &mut self,
+        named: &Placed<String>,
+        code: &'static str,
+        says: &str,
+        hint: String,
+    ) {
+        let error = self.at(named, Diagnostic::error(code, says).hint(hint));
+        self.errors.push(error);
+    }
+
+    fn at(&self, named: &Placed<String>, diagnostic: Diagnostic) -> Diagnostic {
+        diagnostic
+            .in_file(&self.desc.file)
+            .at(&self.desc.source, named.at, named.len)
     }
 
     /// The store, warnings and errors.
@@ -98,4 +153,10 @@ impl<'a> Files<'a> {
         };
         error.hint(hint)
     }
+}
+
+/// Whether a name says glTF.
+fn is_gltf(path: &Path) -> bool {
+    let suffix = path.extension().and_then(|s| s.to_str());
+    suffix.is_some_and(|s| s.eq_ignore_ascii_case("gltf") || s.eq_ignore_ascii_case("glb"))
 }

@@ -8,13 +8,14 @@
 
 pub mod codes;
 mod components;
+mod expand;
 mod files;
 mod pose;
 mod spawn;
 
 pub use components::{
-    AuthoringIndex, Camera, Color, Emissive, Material, Name, Normals, Parent, Pose, Scattering,
-    Shape, Spin, Transform,
+    AuthoringIndex, Camera, Color, Emissive, Light, Material, Name, Normals, Parent, Pose,
+    Scattering, Shape, Spin, Transform,
 };
 pub use pose::{pose, poses};
 pub use spawn::{Spawned, spawn};

@@ -4,13 +4,14 @@ use super::components::{
     AuthoringIndex, Camera, Color, Emissive, Material, Name, Normals, Parent, Scattering, Shape,
     Spin, Transform,
 };
+use super::expand::{self, Root, expand};
 use super::{Pose, codes, files::Files, pose};
-use crate::asset::{AssetStore, Filter, Mesh, MeshId, Wrap};
+use crate::asset::{AssetStore, Filter, Light, Loader, Mesh, MeshId, ModelId, Wrap};
 use crate::diag::{self, Diagnostic, Severity};
 use crate::math::{DMat3, DVec3, axis_angle_deg, euler_deg, quaternion, unit};
 use crate::scene::{
-    CameraDesc, CameraPose, ColorDesc, EntityDesc, MaterialDesc, NormalsDesc, Placed, RotateDesc,
-    SceneDesc, ShapeDesc, TextureFilterDesc, TransformDesc, WrapDesc,
+    CameraDesc, CameraPose, ColorDesc, EntityDesc, GltfDesc, LightDesc, MaterialDesc, NormalsDesc,
+    Placed, RotateDesc, SceneDesc, ShapeDesc, TextureFilterDesc, TransformDesc, WrapDesc,
 };
 use hecs::{Entity, EntityBuilder, World};
 
@@ -24,57 +25,83 @@ pub struct Spawned {
     pub warnings: Vec<Diagnostic>,
 }
 
-/// Loads every file and spawns every entity of a scene.
+/// Loads every file with `loader` and spawns every entity of a scene.
 ///
 /// # Errors
 /// Everything that is wrong with files, each at the place in the scene that names the file or at its own line; textured
 /// materials on meshes without texture coordinates; entities out of reach. The warnings follow the errors.
-pub fn spawn(desc: &SceneDesc) -> Result<Spawned, Vec<Diagnostic>> {
-    let mut files = Files::new(desc);
+pub fn spawn(desc: &SceneDesc, loader: Loader) -> Result<Spawned, Vec<Diagnostic>> {
+    let mut files = Files::new(desc, loader);
     let materials: Vec<Option<Material>> = desc
         .materials
         .iter()
         .map(|m| material(&m.material, &mut files))
         .collect();
-    let meshes: Vec<Option<MeshId>> = desc
+    let sources: Vec<Source> = desc
         .entities
         .iter()
-        .map(|entity| match &entity.value.shape {
-            Some(ShapeDesc::Mesh(path)) => files.mesh(path),
-            _ => None,
-        })
+        .map(|entity| Source::load(&entity.value, &mut files))
         .collect();
     let (assets, mut warnings, mut errors) = files.finish();
 
     let mut world = World::new();
     let entities: Vec<Entity> = desc.entities.iter().map(|_| world.spawn(())).collect();
+    // Each with the index of the entity in the scene.
+    let mut nodes: Vec<(usize, Entity)> = Vec::new();
+    let mut cameras: Vec<(Entity, f64)> = Vec::new();
     for (i, entity) in desc.entities.iter().enumerate() {
         let entity = &entity.value;
-        let mut components = components(entity, i as u32, meshes[i]);
+        let mut components = components(entity, i as u32, sources[i]);
         if let Some(parent) = entity.parent.and_then(|p| entities.get(p)) {
             components.add(Parent(*parent));
         }
-        if let Some(material) = entity.material.and_then(|m| *materials.get(m)?) {
+        let material = entity.material.and_then(|m| *materials.get(m)?);
+        if let Some(material) = material {
             components.add(material);
         }
         // The entity was spawned above, so the only error, "no such entity", cannot happen.
         let _ = world.insert(entities[i], components.build());
-        let found = meshes[i].and_then(|id| missing_uv(desc, i, assets.mesh(id)));
-        match found {
-            Some(error) if error.severity == Severity::Error => errors.push(error),
-            found => warnings.extend(found),
+        if let (Source::Model(model), Some(gltf)) = (sources[i], &entity.gltf) {
+            let root = Root {
+                entity: entities[i],
+                index: i as u32,
+                lights: gltf.lights,
+                material,
+                normals: normals(entity.normals),
+                emissive: entity.emissive.map(Emissive),
+            };
+            let model = assets.model(model);
+            let spawned = expand(&mut world, model, &root);
+            let with_camera = spawned.iter().zip(&model.nodes);
+            cameras.extend(with_camera.filter_map(|(e, node)| Some((*e, node.camera_vfov_deg?))));
+            nodes.extend(spawned.into_iter().map(|e| (i, e)));
+        }
+        for mesh in sources[i].meshes(&assets) {
+            match missing_uv(desc, i, assets.mesh(mesh)) {
+                Some(error) if error.severity == Severity::Error => errors.push(error),
+                found => warnings.extend(found),
+            }
         }
     }
     if let Some(camera) = &desc.camera {
-        let index = AuthoringIndex(desc.entities.len() as u32);
+        let index = AuthoringIndex {
+            entity: desc.entities.len() as u32,
+            node: 0,
+        };
         world.spawn((
             index,
             camera_transform(camera.pose.as_ref()),
             camera_of(camera),
         ));
     }
+    match take_camera(desc, &mut world, &cameras) {
+        Some(error) if error.severity == Severity::Error => errors.push(error),
+        found => warnings.extend(found),
+    }
     pose(&mut world, 0.0);
-    errors.extend(out_of_reach(desc, &world, &entities));
+    nodes.extend(entities.into_iter().enumerate());
+    nodes.sort_by_key(|(i, _)| *i);
+    errors.extend(out_of_reach(desc, &world, &nodes));
     if errors.is_empty() {
         Ok(Spawned {
             world,
@@ -87,25 +114,92 @@ pub fn spawn(desc: &SceneDesc) -> Result<Spawned, Vec<Diagnostic>> {
     }
 }
 
+/// What an entity's triangles come from.
+#[derive(Clone, Copy)]
+enum Source {
+    Nothing,
+    Mesh(MeshId),
+    Model(ModelId),
+}
+
+impl Source {
+    fn load(entity: &EntityDesc, files: &mut Files) -> Source {
+        let mesh = match &entity.shape {
+            Some(ShapeDesc::Mesh { path, mesh }) => files.mesh(path, *mesh).map(Source::Mesh),
+            _ => None,
+        };
+        let model = |gltf: &GltfDesc| files.model(&gltf.path).map(Source::Model);
+        mesh.or_else(|| entity.gltf.as_ref().and_then(model))
+            .unwrap_or(Source::Nothing)
+    }
+
+    /// Each once.
+    fn meshes(self, assets: &AssetStore) -> Vec<MeshId> {
+        match self {
+            Source::Nothing => Vec::new(),
+            Source::Mesh(mesh) => vec![mesh],
+            Source::Model(model) => assets
+                .model(model)
+                .meshes
+                .iter()
+                .flatten()
+                .copied()
+                .collect(),
+        }
+    }
+}
+
+/// Where the scene has no camera, that of a glTF file's node; what there is to say about it.
+fn take_camera(
+    desc: &SceneDesc,
+    world: &mut World,
+    cameras: &[(Entity, f64)],
+) -> Option<Diagnostic> {
+    if desc.camera.is_some() || desc.entities.iter().any(|e| e.value.camera.is_some()) {
+        return None;
+    }
+    let Some((entity, vfov_deg)) = cameras.first() else {
+        let says = "neither the scene nor its glTF files have a perspective camera";
+        let hint = "add `camera: (at: (0, 0, 5), look_at: (0, 0, 0))` at top level";
+        let error = Diagnostic::error(codes::NO_CAMERA, says).hint(hint);
+        return Some(error.in_file(&desc.file));
+    };
+    // The entity was spawned a moment ago, so the only error, "no such entity", cannot happen.
+    let _ = world.insert_one(*entity, expand::camera(*vfov_deg));
+    if cameras.len() == 1 {
+        return None;
+    }
+    let says = format!(
+        "the glTF files bring {} cameras: the first one is taken",
+        cameras.len()
+    );
+    let hint = "add a `camera` to the scene to choose";
+    let warning = Diagnostic::warning(codes::MORE_CAMERAS, says).hint(hint);
+    Some(warning.in_file(&desc.file))
+}
+
 /// The components that need neither other entities nor materials.
-fn components(entity: &EntityDesc, index: u32, mesh: Option<MeshId>) -> EntityBuilder {
+fn components(entity: &EntityDesc, index: u32, source: Source) -> EntityBuilder {
     let mut builder = EntityBuilder::new();
     builder
-        .add(AuthoringIndex(index))
+        .add(AuthoringIndex {
+            entity: index,
+            node: 0,
+        })
         .add(transform(&entity.transform));
     if let Some(name) = &entity.name {
         builder.add(Name(name.clone()));
     }
-    let shape = match &entity.shape {
-        Some(ShapeDesc::Sphere { radius, inverted }) => Some(Shape::Sphere {
+    let shape = match (&entity.shape, source) {
+        (Some(ShapeDesc::Sphere { radius, inverted }), _) => Some(Shape::Sphere {
             radius: *radius,
             inverted: *inverted,
         }),
-        Some(ShapeDesc::Mesh(_)) => mesh.map(|mesh| Shape::Mesh {
+        (_, Source::Mesh(mesh)) => Some(Shape::Mesh {
             mesh,
             normals: normals(entity.normals),
         }),
-        None => None,
+        _ => None,
     };
     if let Some(shape) = shape {
         builder.add(shape);
@@ -123,7 +217,26 @@ fn components(entity: &EntityDesc, index: u32, mesh: Option<MeshId>) -> EntityBu
     if let Some(camera) = &entity.camera {
         builder.add(camera_of(camera));
     }
+    if let Some(light) = entity.light {
+        builder.add(light_of(light));
+    }
     builder
+}
+
+fn light_of(desc: LightDesc) -> Light {
+    match desc {
+        LightDesc::Point { intensity } => Light::Point { intensity },
+        LightDesc::Spot {
+            intensity,
+            inner_deg,
+            outer_deg,
+        } => Light::Spot {
+            intensity,
+            inner_deg,
+            outer_deg,
+        },
+        LightDesc::Sun { irradiance } => Light::Sun { irradiance },
+    }
 }
 
 fn normals(desc: Option<NormalsDesc>) -> Normals {
@@ -244,8 +357,9 @@ fn missing_uv(desc: &SceneDesc, entity: usize, mesh: &Mesh) -> Option<Diagnostic
     Some(diagnostic.in_file(&desc.file).at(&desc.source, at, len))
 }
 
-/// Entities whose composed place or size is not finite.
-fn out_of_reach(desc: &SceneDesc, world: &World, entities: &[Entity]) -> Vec<Diagnostic> {
+/// Entities whose composed place or size, or that of a node under them, is not finite. `entities` are in the order of
+/// the scene, each with its index.
+fn out_of_reach(desc: &SceneDesc, world: &World, entities: &[(usize, Entity)]) -> Vec<Diagnostic> {
     let reachable = |entity: Entity| {
         let pose = world.get::<&Pose>(entity).map(|p| *p).unwrap_or_default();
         let radius = match world.get::<&Shape>(entity).as_deref() {
@@ -254,13 +368,15 @@ fn out_of_reach(desc: &SceneDesc, world: &World, entities: &[Entity]) -> Vec<Dia
         };
         pose.affine().is_finite() && (radius * pose.size).is_normal()
     };
-    let lost = (0..entities.len()).filter(|i| !reachable(entities[*i]));
-    lost.map(|i| {
+    let lost = entities.iter().filter(|(_, e)| !reachable(*e));
+    let mut lost: Vec<usize> = lost.map(|(i, _)| *i).collect();
+    lost.dedup();
+    let told = lost.into_iter().map(|i| {
         let (at, len) = (desc.entities[i].at, desc.entities[i].len);
         let says = "the place or the size of this entity is beyond the range of 64-bit numbers";
         Diagnostic::error(codes::OUT_OF_REACH, says)
             .in_file(&desc.file)
             .at(&desc.source, at, len)
-    })
-    .collect()
+    });
+    told.collect()
 }

@@ -114,7 +114,7 @@ impl Stage {
 
 /// Spawns, poses and builds a frame.
 fn flatten(desc: &SceneDesc, frame: u32, options: &TraceOptions) -> FlatScene {
-    let spawned = match luxel::world::spawn(desc) {
+    let spawned = match luxel::world::spawn(desc, luxel::asset::Loader::new()) {
         Ok(spawned) => spawned,
         Err(errors) => panic!("{errors:#?}"),
     };

@@ -170,7 +170,7 @@ fn shapes(shape: &ShapeDesc, entity: &EntityDesc, map: &Map, folder: &Path) -> V
             inverted: *inverted,
             axes: map.linear,
         }],
-        ShapeDesc::Mesh(path) => obj::read(&folder.join(&path.value))
+        ShapeDesc::Mesh { path, .. } => obj::read(&folder.join(&path.value))
             .into_iter()
             .map(|face| triangle(face, entity.normals, map))
             .collect(),
