@@ -84,7 +84,8 @@ pub fn summary(diagnostics: &[Diagnostic]) -> Option<String> {
 }
 
 /// The diagnostics as a JSON array of objects with `severity`, `code`, `message`, `file`, `line`, `column`, `length`,
-/// `text` and `hint`; what is not known is null. Columns and lengths count characters, from 1.
+/// `text`, `pointer` and `hint`; what is not known is null. Columns and lengths count characters, from 1; a pointer is
+/// a JSON pointer (RFC 6901) into a glTF file.
 #[must_use]
 pub fn json(diagnostics: &[Diagnostic]) -> Value {
     let object = |d: &Diagnostic| {
@@ -98,6 +99,7 @@ pub fn json(diagnostics: &[Diagnostic]) -> Value {
             "column": span.map(|s| s.column),
             "length": span.map(|s| s.len),
             "text": span.map(|s| &s.text),
+            "pointer": d.pointer,
             "hint": d.hint,
         })
     };
@@ -125,10 +127,11 @@ fn group(diagnostic: &Diagnostic) -> Group<'_> {
     let title = level
         .primary_title(clipped(&diagnostic.message))
         .id(diagnostic.code);
-    let path = diagnostic
-        .file
-        .as_ref()
-        .map(|f| f.to_string_lossy().into_owned());
+    let path = diagnostic.file.as_ref().map(|file| {
+        let pointer = diagnostic.pointer.as_ref();
+        let place = pointer.map_or(String::new(), |pointer| format!("#{pointer}"));
+        file.to_string_lossy().into_owned() + &place
+    });
     if let Some(span) = &diagnostic.span {
         let byte = |chars: u32| {
             let end = span.text.len();
@@ -173,6 +176,10 @@ mod tests {
                 .in_file("a.ron")
                 .hint("add a light"),
             Diagnostic::error("E900", "alone"),
+            Diagnostic::error("E128", "no such node: 7")
+                .in_file("box.gltf")
+                .pointer("/nodes/3/children/0")
+                .hint("there are 4"),
         ]
     }
 
@@ -190,6 +197,10 @@ warning[W001]: nothing shines
  = help: add a light
 
 error[E900]: alone
+
+error[E128]: no such node: 7
+--> box.gltf#/nodes/3/children/0
+ = help: there are 4
 ";
         assert_eq!(render(&sample(), Style::Plain), wanted);
         assert!(render(&sample(), Style::Coloured).contains('\u{1b}'));
@@ -206,7 +217,7 @@ error[E900]: alone
 
     #[test]
     fn counts_are_in_the_right_number() {
-        assert_eq!(summary(&sample()).as_deref(), Some("2 errors, 1 warning"));
+        assert_eq!(summary(&sample()).as_deref(), Some("3 errors, 1 warning"));
         assert_eq!(summary(&[]), None);
     }
 
@@ -219,5 +230,11 @@ error[E900]: alone
         assert_eq!(array[0]["text"], "  two é three");
         assert_eq!(array[1]["severity"], "warning");
         assert!(array[1]["line"].is_null() && array[2]["file"].is_null());
+        assert!(array[2]["pointer"].is_null());
+        assert_eq!(array[3]["pointer"], "/nodes/3/children/0");
+        assert_eq!(
+            sample()[3].to_string(),
+            "error[E128]: box.gltf#/nodes/3/children/0: no such node: 7 (there are 4)"
+        );
     }
 }

@@ -42,6 +42,8 @@ pub struct Diagnostic {
     pub file: Option<PathBuf>,
     /// The place in that file.
     pub span: Option<Span>,
+    /// The place in a JSON file as a pointer (RFC 6901): `/meshes/0/primitives/1`; empty for the whole of it.
+    pub pointer: Option<String>,
     /// What to do about it, e.g. `did you mean "gold"?`.
     pub hint: Option<String>,
 }
@@ -55,6 +57,7 @@ impl Diagnostic {
             message: message.into(),
             file: None,
             span: None,
+            pointer: None,
             hint: None,
         }
     }
@@ -78,6 +81,13 @@ impl Diagnostic {
     #[must_use]
     pub fn at(mut self, source: &str, at: usize, len: usize) -> Diagnostic {
         self.span = Some(Span::of_bytes(source, at, len));
+        self
+    }
+
+    /// Adds the place in a JSON file as a pointer.
+    #[must_use]
+    pub fn pointer(mut self, pointer: impl Into<String>) -> Diagnostic {
+        self.pointer = Some(pointer.into());
         self
     }
 
@@ -119,7 +129,7 @@ fn floor_boundary(s: &str, i: usize) -> usize {
 }
 
 impl fmt::Display for Diagnostic {
-    /// `error[E001]: scene.ron:4:12: message (hint)` on one line.
+    /// `error[E001]: scene.ron:4:12: message (hint)` on one line; `box.gltf#/nodes/3: message` with a pointer.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let name = match self.severity {
             Severity::Error => "error",
@@ -127,7 +137,11 @@ impl fmt::Display for Diagnostic {
         };
         write!(f, "{name}[{}]: ", self.code)?;
         if let Some(file) = &self.file {
-            write!(f, "{}:", file.display())?;
+            write!(f, "{}", file.display())?;
+            if let Some(pointer) = &self.pointer {
+                write!(f, "#{pointer}")?;
+            }
+            write!(f, ":")?;
             if let Some(span) = &self.span {
                 write!(f, "{}:{}:", span.line, span.column)?;
             }
