@@ -20,7 +20,15 @@ const RULES: &[Rule] = &[
     (
         "asset",
         &["diag", "math"],
-        &["image", "sha2", "strsim", "thiserror", "tobj"],
+        &[
+            "gltf",
+            "image",
+            "serde_json",
+            "sha2",
+            "strsim",
+            "thiserror",
+            "tobj",
+        ],
     ),
     (
         "world",
@@ -82,6 +90,7 @@ const CRATES: &[&str] = &[
     "ctrlc",
     "exr",
     "glam",
+    "gltf",
     "hecs",
     "image",
     "indicatif",
