@@ -21,6 +21,27 @@ pub const TOO_LARGE: &str = "E109";
 /// The OBJ parser gave something other than what the guard asked for: a bug of luxel.
 pub const PARSER: &str = "E110";
 
+/// A glTF file whose binary container (GLB) is broken, or that is neither GLB nor text.
+pub const GLTF_CONTAINER: &str = "E120";
+/// A glTF file of another version than 2.
+pub const GLTF_VERSION: &str = "E121";
+/// A glTF file whose text is not JSON.
+pub const GLTF_JSON: &str = "E122";
+/// A glTF file that requires an extension which luxel does not have.
+pub const GLTF_REQUIRES: &str = "E123";
+/// A value of a glTF file that is missing, of the wrong kind or impossible.
+pub const GLTF_VALUE: &str = "E124";
+/// An index of a glTF file that leads to nothing.
+pub const GLTF_REFERENCE: &str = "E125";
+/// A buffer of a glTF file, or its URI, that gives fewer bytes than it should, or none.
+pub const GLTF_BUFFER: &str = "E126";
+/// An accessor of a glTF file that cannot be read.
+pub const GLTF_ACCESSOR: &str = "E127";
+/// Nodes of a glTF file that are no forest.
+pub const GLTF_NODES: &str = "E128";
+/// A mesh primitive of a glTF file that cannot be drawn.
+pub const GLTF_PRIMITIVE: &str = "E129";
+
 /// An MTL file that is missing: its materials are replaced by the default.
 pub const MTL_MISSING: &str = "W101";
 /// A `usemtl` that no MTL file defines.
@@ -51,3 +72,33 @@ pub const BLACK_FACTOR: &str = "W113";
 pub const TANGLED_FACE: &str = "W114";
 /// Faces that name uvs or normals where the file has none at all: they count as absent.
 pub const ABSENT: &str = "W115";
+/// A value of a glTF file that breaks the format where luxel does not need it.
+pub const GLTF_ODD_VALUE: &str = "W120";
+/// A property of a glTF file that the format does not have, and that resembles one that it has.
+pub const GLTF_UNKNOWN_PROPERTY: &str = "W121";
+/// An optional extension of a glTF file which luxel does not have.
+pub const GLTF_EXTENSION: &str = "W122";
+/// Extensions of a glTF file that are declared wrongly.
+pub const GLTF_DECLARATION: &str = "W123";
+/// An empty array or object in a glTF file, which should be absent.
+pub const GLTF_EMPTY: &str = "W124";
+/// A buffer of a glTF file that breaks the format and can be read.
+pub const GLTF_ODD_BUFFER: &str = "W125";
+/// An image of a glTF file that breaks the format or that nothing needs.
+pub const GLTF_IMAGE: &str = "W126";
+/// An accessor or buffer view of a glTF file that breaks a rule of layout and can be read.
+pub const GLTF_LAYOUT: &str = "W127";
+/// Bounds of an accessor of a glTF file that are absent or not those of its elements.
+pub const GLTF_BOUNDS: &str = "W128";
+/// Elements of a glTF file that are out of their range.
+pub const GLTF_ELEMENTS: &str = "W129";
+/// A mesh primitive of a glTF file that breaks a rule and can be drawn.
+pub const GLTF_ODD_PRIMITIVE: &str = "W130";
+/// Nodes or scenes of a glTF file that break a rule and can be placed.
+pub const GLTF_ODD_NODES: &str = "W131";
+/// Animations, skins or morph targets of a glTF file that break a rule; luxel ignores them anyway.
+pub const GLTF_MOTION: &str = "W132";
+/// Cameras, materials or lights of a glTF file that break a rule.
+pub const GLTF_LOOK: &str = "W133";
+/// A glTF container that breaks a rule and can be read.
+pub const GLTF_ODD_CONTAINER: &str = "W134";

@@ -11,6 +11,7 @@
 //! Deliberately absent: the scene, the world, pixels of the film.
 
 pub mod codes;
+mod gltf;
 mod loader;
 mod materials;
 mod mtl;

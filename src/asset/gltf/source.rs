@@ -1,0 +1,168 @@
+//! A glTF file, opened: its JSON, its typed document, its bytes.
+//!
+//! Enter: a path. Leave: a [`Source`] whose buffers that the scene needs are read, or everything that keeps the file
+//! from being used, with JSON pointers.
+
+use super::accessor::{self, Elements};
+use super::buffers::Buffers;
+use super::container::Container;
+use super::layout::{Layouts, items, natural};
+use super::uri::{self, Uri};
+use crate::asset::{Loader, codes};
+use crate::diag::Diagnostic;
+use serde_json::Value;
+use std::borrow::Cow;
+use std::path::{Path, PathBuf};
+
+/// A glTF file, opened.
+#[derive(Debug)]
+pub(super) struct Source {
+    /// The file.
+    pub(super) path: PathBuf,
+    /// Its JSON as written.
+    pub(super) json: Value,
+    /// Its JSON as types, without what luxel does not read: animations, skins, morph targets, extras, unknown
+    /// properties and extensions.
+    pub(super) document: gltf::Document,
+    layouts: Layouts,
+    buffers: Buffers,
+}
+
+/// Where the bytes of an image are.
+#[derive(Debug)]
+pub(super) enum Image<'a> {
+    /// A file of its own, not read.
+    File(PathBuf),
+    /// In the glTF file or one of its buffers.
+    Embedded(Cow<'a, [u8]>),
+}
+
+impl Source {
+    /// Opens a file and reads the buffers that its default scene needs. Warnings go to the loader.
+    ///
+    /// # Errors
+    /// Everything that keeps the file from being used.
+    pub(super) fn open(loader: &mut Loader, path: &Path) -> Result<Source, Vec<Diagnostic>> {
+        let mut warnings = Vec::new();
+        let source = Source::read(loader, path, &mut warnings);
+        let here = |d: Diagnostic| if d.file.is_none() { d.in_file(path) } else { d };
+        loader.warnings.extend(warnings.into_iter().map(here));
+        source.map_err(|errors| errors.into_iter().map(here).collect())
+    }
+
+    fn read(
+        loader: &mut Loader,
+        path: &Path,
+        warnings: &mut Vec<Diagnostic>,
+    ) -> Result<Source, Vec<Diagnostic>> {
+        let one = |error| vec![error];
+        let bytes = loader.read(path).map_err(one)?;
+        let container = Container::open(bytes, warnings).map_err(one)?;
+        let json = parse(container.json()).map_err(one)?;
+        let document = typed(&json).map_err(one)?;
+        let layouts = Layouts::of(&json);
+        let buffers = Buffers::of(container, &json);
+        let mut source = Source {
+            path: path.to_owned(),
+            json,
+            document,
+            layouts,
+            buffers,
+        };
+        let mut errors = Vec::new();
+        for index in 0..items(&source.json, "buffers").len() {
+            errors.extend(source.buffers.load(loader, path, &source.json, index).err());
+        }
+        if errors.is_empty() {
+            Ok(source)
+        } else {
+            Err(errors)
+        }
+    }
+
+    /// The elements of an accessor as f64.
+    ///
+    /// # Errors
+    /// An accessor that cannot be read.
+    pub(super) fn numbers(&self, accessor: usize) -> Result<Elements, Diagnostic> {
+        accessor::numbers(&self.layouts, &self.buffers, accessor).map_err(|e| e.in_file(&self.path))
+    }
+
+    /// The elements of an accessor of indices.
+    ///
+    /// # Errors
+    /// An accessor that cannot be read.
+    pub(super) fn indices(&self, accessor: usize) -> Result<Vec<u32>, Diagnostic> {
+        accessor::indices(&self.layouts, &self.buffers, accessor).map_err(|e| e.in_file(&self.path))
+    }
+
+    /// Where the bytes of an image are. Reads its buffer if need be.
+    ///
+    /// # Errors
+    /// A URI that leads nowhere, a buffer that is not there.
+    pub(super) fn image(
+        &mut self,
+        loader: &mut Loader,
+        index: usize,
+    ) -> Result<Image<'_>, Diagnostic> {
+        let place = |d: Diagnostic, part| {
+            d.pointer(format!("/images/{index}{part}"))
+                .in_file(&self.path)
+        };
+        let error = |says: String| Diagnostic::error(codes::GLTF_BUFFER, says);
+        let image = items(&self.json, "images").get(index);
+        if let Some(text) = image
+            .and_then(|image| image.get("uri"))
+            .and_then(Value::as_str)
+        {
+            return match uri::resolve(&self.path, text) {
+                Ok(Uri::File(path)) => Ok(Image::File(path)),
+                Ok(Uri::Embedded(_, bytes)) => Ok(Image::Embedded(Cow::Owned(bytes))),
+                Err(bad) => Err(place(error(bad.says).hint(bad.hint), "/uri")),
+            };
+        }
+        let view_index = image
+            .and_then(|image| image.get("bufferView"))
+            .and_then(natural);
+        let view = view_index.and_then(|view| self.layouts.view(view));
+        let (Some(view_index), Some(view)) = (view_index, view) else {
+            return Err(place(error("an image without a source".into()), ""));
+        };
+        self.buffers
+            .load(loader, &self.path, &self.json, view.buffer)
+            .map_err(|e| e.in_file(&self.path))?;
+        let bytes = accessor::view_bytes(&self.buffers, view, view_index);
+        bytes
+            .map(|bytes| Image::Embedded(Cow::Borrowed(bytes)))
+            .map_err(|e| e.in_file(&self.path))
+    }
+}
+
+/// The JSON of a text.
+fn parse(text: &str) -> Result<Value, Diagnostic> {
+    serde_json::from_str(text).map_err(|e| {
+        let before: usize = text
+            .split_inclusive('\n')
+            .take(e.line().saturating_sub(1))
+            .map(str::len)
+            .sum();
+        let at = before + e.column().saturating_sub(1);
+        let says = e.to_string();
+        let says = says.split(" at line").next().unwrap_or(&says);
+        Diagnostic::error(codes::GLTF_JSON, format!("not JSON: {says}"))
+            .at(text, at, 1)
+            .hint("export the file again as glTF 2.0")
+    })
+}
+
+/// The typed document of a JSON.
+fn typed(json: &Value) -> Result<gltf::Document, Diagnostic> {
+    let error = |says: String| {
+        Diagnostic::error(codes::GLTF_VALUE, says)
+            .pointer("")
+            .hint("export the file again as glTF 2.0")
+    };
+    let text = json.to_string();
+    let root = gltf::json::Root::from_str(&text).map_err(|e| error(e.to_string()))?;
+    gltf::Document::from_json(root).map_err(|e| error(e.to_string()))
+}
