@@ -67,6 +67,8 @@ pub struct Mesh {
     /// Normals of each corner as in the file, unit length; `None` where the file gives none. Empty when the file has
     /// none at all, else length `3 * triangles`.
     pub normals: Vec<Option<DVec3>>,
+    /// Whether a mesh without normals is meant to be faceted, as glTF has it (2.0, section 3.7.2.1), not smooth.
+    pub faceted: bool,
     /// Index into `materials` of each triangle; `None` where the file names none. Length `triangles`.
     pub material: Vec<Option<u32>>,
     /// The materials that the file names, in order of first use.

@@ -34,6 +34,7 @@ pub(crate) fn corner_normals(mesh: &Mesh, normals: Normals) -> Option<Vec<DVec3>
         Normals::File if !mesh.normals.is_empty() && mesh.normals.iter().all(Option::is_some) => {
             Some(mesh.normals.iter().copied().flatten().collect())
         }
+        Normals::File if mesh.normals.is_empty() && mesh.faceted => None,
         Normals::File => {
             let mut corners = smooth(mesh, Normals::DEFAULT_ANGLE_DEG);
             for (corner, file) in corners.iter_mut().zip(&mesh.normals) {

@@ -48,7 +48,8 @@ pub enum Shape {
 /// Where the shading normals of a mesh come from.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum Normals {
-    /// The file; where it has none, `Smooth` by [`Normals::DEFAULT_ANGLE_DEG`].
+    /// The file; where it has none, `Smooth` by [`Normals::DEFAULT_ANGLE_DEG`], or `Flat` if the format says so, as
+    /// glTF does.
     #[default]
     File,
     /// The triangles themselves.
