@@ -23,6 +23,7 @@ const RULES: &[Rule] = &[
         &[
             "gltf",
             "image",
+            "rayon",
             "serde_json",
             "sha2",
             "strsim",

@@ -41,6 +41,10 @@ pub const GLTF_ACCESSOR: &str = "E127";
 pub const GLTF_NODES: &str = "E128";
 /// A mesh primitive of a glTF file that cannot be drawn.
 pub const GLTF_PRIMITIVE: &str = "E129";
+/// An index of a glTF mesh primitive that names no vertex.
+pub const GLTF_INDEX: &str = "E130";
+/// An attribute of a glTF mesh primitive whose elements have the wrong number of components.
+pub const GLTF_ATTRIBUTE: &str = "E131";
 
 /// An MTL file that is missing: its materials are replaced by the default.
 pub const MTL_MISSING: &str = "W101";
@@ -102,3 +106,25 @@ pub const GLTF_MOTION: &str = "W132";
 pub const GLTF_LOOK: &str = "W133";
 /// A glTF container that breaks a rule and can be read.
 pub const GLTF_ODD_CONTAINER: &str = "W134";
+/// A glTF file whose default scene has nothing to render.
+pub const GLTF_NOTHING: &str = "W135";
+/// A glTF file without a scene: its root nodes are shown.
+pub const GLTF_NO_SCENE: &str = "W136";
+/// Primitives of a glTF file that have no triangles, which are skipped.
+pub const GLTF_NO_TRIANGLES: &str = "W137";
+/// Animations, skins or morph targets of a glTF file, which is shown at rest.
+pub const GLTF_AT_REST: &str = "W138";
+/// Cameras of a glTF file that are not perspective.
+pub const GLTF_CAMERA: &str = "W139";
+/// Materials of a glTF file whose gloss luxel does not have.
+pub const GLTF_GLOSS: &str = "W140";
+/// What materials of a glTF file ask for and luxel does not model.
+pub const GLTF_NOT_MODELLED: &str = "W141";
+/// An image of a glTF file that is missing: its materials keep their factors.
+pub const GLTF_IMAGE_MISSING: &str = "W142";
+/// Primitives of a glTF file without the texture coordinates that their material reads.
+pub const GLTF_WITHOUT_UV: &str = "W143";
+/// Unlit materials of a glTF file, which are shown as light sources.
+pub const GLTF_UNLIT: &str = "W144";
+/// Vertex colours of a glTF file that are not numbers from 0 to 1.
+pub const GLTF_COLOR: &str = "W145";

@@ -3,7 +3,7 @@
 use super::materials::Source;
 use super::paths::{canonical, similar_file};
 use super::{
-    AssetStore, Mesh, MeshId, Model, ModelId, Texture, TextureId, codes, obj, text, texture,
+    AssetStore, Mesh, MeshId, Model, ModelId, Texture, TextureId, codes, gltf, obj, text, texture,
 };
 use crate::diag::Diagnostic;
 use sha2::{Digest, Sha256};
@@ -41,10 +41,7 @@ impl Loader {
         if let Some(known) = self.meshes.get(&key) {
             return known.clone();
         }
-        let loaded = self.read_mesh(path).map(|mesh| {
-            self.store.meshes.push(Arc::new(mesh));
-            MeshId(self.store.meshes.len() as u32 - 1)
-        });
+        let loaded = self.read_mesh(path).map(|mesh| self.keep_mesh(mesh));
         self.meshes.insert(key, loaded.clone());
         loaded
     }
@@ -58,7 +55,7 @@ impl Loader {
         if let Some(known) = self.models.get(&key) {
             return known.clone();
         }
-        let loaded = self.read_model(path).map(|model| {
+        let loaded = gltf::read(self, path).map(|model| {
             self.store.models.push(Arc::new(model));
             ModelId(self.store.models.len() as u32 - 1)
         });
@@ -87,6 +84,12 @@ impl Loader {
     #[must_use]
     pub fn loaded(&self, id: MeshId) -> &Arc<Mesh> {
         self.store.mesh(id)
+    }
+
+    /// A texture that was read, by its id.
+    #[must_use]
+    pub fn loaded_texture(&self, id: TextureId) -> &Arc<Texture> {
+        self.store.texture(id)
     }
 
     /// A glTF file that was read, by its id.
@@ -132,11 +135,25 @@ impl Loader {
         Ok(bytes)
     }
 
-    fn read_model(&mut self, path: &Path) -> Result<Model, Vec<Diagnostic>> {
-        self.read(path).map_err(|e| vec![e])?;
-        let says = "a glTF file cannot be rendered yet";
-        let error = Diagnostic::error(crate::diag::codes::NOT_YET, says);
-        Err(vec![error.in_file(path)])
+    /// What reading a texture file gave, if it was read.
+    pub(super) fn known_texture(&self, path: &Path) -> Option<Result<TextureId, Diagnostic>> {
+        self.textures.get(&canonical(path)).cloned()
+    }
+
+    /// Keeps a texture that was decoded elsewhere; under the path of its file, if it has one of its own.
+    pub(super) fn keep_texture(&mut self, texture: Texture, file: Option<&Path>) -> TextureId {
+        self.store.textures.push(Arc::new(texture));
+        let id = TextureId(self.store.textures.len() as u32 - 1);
+        if let Some(file) = file {
+            self.textures.insert(canonical(file), Ok(id));
+        }
+        id
+    }
+
+    /// Keeps a mesh that has no file of its own.
+    pub(super) fn keep_mesh(&mut self, mesh: Mesh) -> MeshId {
+        self.store.meshes.push(Arc::new(mesh));
+        MeshId(self.store.meshes.len() as u32 - 1)
     }
 
     fn read_texture(&mut self, path: &Path) -> Result<Texture, Diagnostic> {

@@ -12,7 +12,7 @@ use crate::math::{DVec2, DVec3};
 use tobj::LoadError;
 
 /// Coordinates beyond this are refused: products of three of them, as in volumes, would overflow.
-const MAX_COORDINATE: f64 = 1e100;
+pub(super) const MAX_COORDINATE: f64 = 1e100;
 
 /// Triangles without area, faces with bad attributes: how many, and the offset of the first one's line.
 #[derive(Clone, Copy, Default)]
@@ -329,7 +329,7 @@ impl<'a> Builder<'a> {
 }
 
 /// Whether the triangle has an area: its edges, each scaled to size 1 so that nothing underflows, are not parallel.
-fn has_area([a, b, c]: [DVec3; 3]) -> bool {
+pub(super) fn has_area([a, b, c]: [DVec3; 3]) -> bool {
     let scaled = |edge: DVec3| edge / edge.abs().max_element();
     let cross = scaled(b - a).cross(scaled(c - a));
     cross.abs().max_element() > 0.0 && b != c

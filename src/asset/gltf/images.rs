@@ -1,0 +1,194 @@
+//! The images that the materials of a file read: located, decoded once each, in parallel.
+//!
+//! Enter: indices of images, for colour or for gloss. Leave: textures in the store, and the means of images that are
+//! only averaged. An image that nothing reads is not even looked for; a missing file is a warning, a damaged one an error.
+
+use super::notes::Notes;
+use super::source::{Image, Source};
+use crate::asset::paths::similar_file;
+use crate::asset::{Loader, Texture, TextureId, codes, texture};
+use crate::diag::Diagnostic;
+use rayon::prelude::*;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+/// Indices of the images that materials read.
+#[derive(Debug, Default)]
+pub(super) struct Wanted {
+    /// As colour, texel by texel.
+    pub(super) colors: BTreeSet<usize>,
+    /// As roughness and metalness, of which luxel takes the mean.
+    pub(super) gloss: BTreeSet<usize>,
+}
+
+/// Means of the channels of a metallic-roughness texture, from 0 to 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Gloss {
+    /// Green (section 3.9.2).
+    pub(super) roughness: f64,
+    /// Blue.
+    pub(super) metallic: f64,
+}
+
+/// The images that were found.
+#[derive(Debug, Default)]
+pub(super) struct Images {
+    colors: BTreeMap<usize, TextureId>,
+    gloss: BTreeMap<usize, Gloss>,
+}
+
+impl Images {
+    /// An image as a texture; `None` where its file is missing.
+    pub(super) fn texture(&self, image: usize) -> Option<TextureId> {
+        self.colors.get(&image).copied()
+    }
+
+    /// The means of an image; `None` where its file is missing.
+    pub(super) fn gloss(&self, image: usize) -> Option<Gloss> {
+        self.gloss.get(&image).copied()
+    }
+}
+
+/// The encoded bytes of an image.
+struct Encoded {
+    image: usize,
+    /// The file, if it is one of its own.
+    file: Option<PathBuf>,
+    bytes: Vec<u8>,
+}
+
+/// Reads and decodes images.
+///
+/// # Errors
+/// Images that are damaged, of an unsuitable format or too large, or whose bytes are out of reach.
+pub(super) fn read(
+    loader: &mut Loader,
+    source: &mut Source,
+    wanted: &Wanted,
+    notes: &mut Notes,
+) -> Result<Images, Vec<Diagnostic>> {
+    let mut images = Images::default();
+    let mut errors = Vec::new();
+    let mut encoded = Vec::new();
+    for &image in wanted.colors.union(&wanted.gloss) {
+        let color_only = !wanted.gloss.contains(&image);
+        match locate(loader, source, image, color_only, notes) {
+            Ok(Located::Known(texture)) => drop(images.colors.insert(image, texture)),
+            Ok(Located::Encoded(found)) => encoded.push(found),
+            Ok(Located::Missing) => {}
+            Err(error) => errors.push(error),
+        }
+    }
+    let decode = |one: &Encoded| texture::decode(one.name(&source.path), &one.bytes);
+    let decoded: Vec<_> = encoded.par_iter().map(decode).collect();
+    for (one, decoded) in encoded.into_iter().zip(decoded) {
+        match decoded {
+            Ok(texture) => {
+                if wanted.gloss.contains(&one.image) {
+                    images.gloss.insert(one.image, mean(&texture));
+                }
+                if wanted.colors.contains(&one.image) {
+                    let id = loader.keep_texture(texture, one.file.as_deref());
+                    images.colors.insert(one.image, id);
+                }
+            }
+            Err(error) => errors.push(at_image(error, source, &one)),
+        }
+    }
+    if errors.is_empty() {
+        Ok(images)
+    } else {
+        Err(errors)
+    }
+}
+
+impl Encoded {
+    /// What the texture is said to come from.
+    fn name<'a>(&'a self, source: &'a Path) -> &'a Path {
+        self.file.as_deref().unwrap_or(source)
+    }
+}
+
+/// Where an image is.
+enum Located {
+    /// A file that was read before.
+    Known(TextureId),
+    /// Its bytes.
+    Encoded(Encoded),
+    /// Nowhere, which was said.
+    Missing,
+}
+
+fn locate(
+    loader: &mut Loader,
+    source: &mut Source,
+    image: usize,
+    color_only: bool,
+    notes: &mut Notes,
+) -> Result<Located, Diagnostic> {
+    let file = match source.image(loader, image)? {
+        Image::Embedded(bytes) => {
+            return Ok(Located::Encoded(Encoded {
+                image,
+                file: None,
+                bytes: bytes.into_owned(),
+            }));
+        }
+        Image::File(file) => file,
+    };
+    if let Some(Ok(texture)) = loader.known_texture(&file).filter(|_| color_only) {
+        return Ok(Located::Known(texture));
+    }
+    let pointer = format!("/images/{image}/uri");
+    if !file.is_file() {
+        notes.tell(missing(&file).pointer(pointer));
+        return Ok(Located::Missing);
+    }
+    let bytes = loader.read(&file).map_err(|error| {
+        let message = format!("{}: {}", file.display(), error.message);
+        Diagnostic { message, ..error }
+            .in_file(&source.path)
+            .pointer(pointer)
+    })?;
+    Ok(Located::Encoded(Encoded {
+        image,
+        file: Some(file),
+        bytes,
+    }))
+}
+
+fn missing(file: &Path) -> Diagnostic {
+    let says = format!(
+        "the image {} is missing: materials keep their plain colour",
+        file.display()
+    );
+    let warning = Diagnostic::warning(codes::GLTF_IMAGE_MISSING, says);
+    match similar_file(file) {
+        Some(similar) => warning.hint(format!("did you mean \"{similar}\"?")),
+        None => warning.hint("put it where the glTF file says"),
+    }
+}
+
+/// An error of decoding, at the place in the glTF file.
+fn at_image(error: Diagnostic, source: &Source, of: &Encoded) -> Diagnostic {
+    let image = of.image;
+    let (message, pointer) = match &of.file {
+        Some(file) => {
+            let message = format!("{}: {}", file.display(), error.message);
+            (message, format!("/images/{image}/uri"))
+        }
+        None => (error.message, format!("/images/{image}")),
+    };
+    let error = Diagnostic { message, ..error };
+    error.in_file(&source.path).pointer(pointer)
+}
+
+fn mean(texture: &Texture) -> Gloss {
+    let (texels, _) = texture.texels.as_chunks::<3>();
+    let sum = |channel: usize| -> u64 { texels.iter().map(|t| u64::from(t[channel])).sum() };
+    let most = f64::from(u8::MAX) * texels.len().max(1) as f64;
+    Gloss {
+        roughness: sum(1) as f64 / most,
+        metallic: sum(2) as f64 / most,
+    }
+}
