@@ -30,13 +30,35 @@ pub(super) fn numbers(
     index: usize,
 ) -> Result<Elements, Diagnostic> {
     let accessor = known(layouts, index)?;
+    elements(layouts, buffers, index, accessor, accessor.normalized)
+}
+
+/// Reads the elements of an accessor as they are stored, whatever they stand for.
+///
+/// # Errors
+/// As for [`numbers`].
+pub(super) fn stored(
+    layouts: &Layouts,
+    buffers: &Buffers,
+    index: usize,
+) -> Result<Elements, Diagnostic> {
+    elements(layouts, buffers, index, known(layouts, index)?, false)
+}
+
+fn elements(
+    layouts: &Layouts,
+    buffers: &Buffers,
+    index: usize,
+    accessor: &Accessor,
+    normalized: bool,
+) -> Result<Elements, Diagnostic> {
     let width = accessor.shape.width();
     let mut components = match accessor.view {
         Some(view) => {
             let place = (view, accessor.offset);
             let run = run(layouts, buffers, index, place, Elementary::of(accessor))?;
             let mut components = Vec::with_capacity(accessor.count * width);
-            run.read(accessor.normalized, |component| components.push(component));
+            run.read(normalized, |component| components.push(component));
             components
         }
         None if accessor.count > MAX_ZEROS => {
@@ -49,7 +71,13 @@ pub(super) fn numbers(
         None => vec![0.0; accessor.count * width],
     };
     if let Some(sparse) = &accessor.sparse {
-        override_some(layouts, buffers, index, (accessor, sparse), &mut components)?;
+        let (at, new) = overrides(layouts, buffers, index, (accessor, sparse), normalized)?;
+        for (place, element) in at.into_iter().zip(new.chunks_exact(width)) {
+            let old = components.chunks_exact_mut(width).nth(place as usize);
+            let count = accessor.count;
+            let beyond = || unreadable(index, format!("sparse index {place} of {count} elements"));
+            old.ok_or_else(beyond)?.copy_from_slice(element);
+        }
     }
     Ok(Elements { width, components })
 }
@@ -228,39 +256,48 @@ pub(super) fn view_bytes<'a>(
         })
 }
 
-/// Puts the sparse elements in their places (section 3.6.2.3).
-fn override_some(
+/// Places and components of the sparse elements (section 3.6.2.3).
+fn overrides(
     layouts: &Layouts,
     buffers: &Buffers,
     index: usize,
     (accessor, sparse): (&Accessor, &Sparse),
-    components: &mut [f64],
-) -> Result<(), Diagnostic> {
-    let places = Elementary {
+    normalized: bool,
+) -> Result<(Vec<u32>, Vec<f64>), Diagnostic> {
+    let elements = Elementary {
+        count: sparse.count,
+        ..Elementary::of(accessor)
+    };
+    let at = places(layouts, buffers, index, sparse)?;
+    let values = run(layouts, buffers, index, sparse.values, elements)?;
+    let mut new = Vec::with_capacity(sparse.count * accessor.shape.width());
+    values.read(normalized, |value| new.push(value));
+    Ok((at, new))
+}
+
+fn places(
+    layouts: &Layouts,
+    buffers: &Buffers,
+    index: usize,
+    sparse: &Sparse,
+) -> Result<Vec<u32>, Diagnostic> {
+    let elements = Elementary {
         component: sparse.index,
         shape: Shape::SCALAR,
         count: sparse.count,
     };
-    let values = Elementary {
-        count: sparse.count,
-        ..Elementary::of(accessor)
-    };
-    let places = run(layouts, buffers, index, sparse.indices, places)?;
-    let values = run(layouts, buffers, index, sparse.values, values)?;
-    let width = accessor.shape.width();
+    let run = run(layouts, buffers, index, sparse.indices, elements)?;
     let mut at = Vec::with_capacity(sparse.count);
-    places.read(false, |place| at.push(place as usize));
-    let mut new = Vec::with_capacity(sparse.count * width);
-    values.read(accessor.normalized, |value| new.push(value));
-    for (place, element) in at.into_iter().zip(new.chunks_exact(width)) {
-        let Some(old) = components.chunks_exact_mut(width).nth(place) else {
-            let count = accessor.count;
-            return Err(unreadable(
-                index,
-                format!("sparse index {place} of {count} elements"),
-            ));
-        };
-        old.copy_from_slice(element);
-    }
-    Ok(())
+    run.read(false, |place| at.push(place as u32));
+    Ok(at)
+}
+
+/// The places of an accessor's sparse elements, where it has any and they can be read.
+pub(super) fn sparse_places(
+    layouts: &Layouts,
+    buffers: &Buffers,
+    index: usize,
+) -> Option<Vec<u32>> {
+    let sparse = layouts.accessor(index)?.sparse.as_ref()?;
+    places(layouts, buffers, index, sparse).ok()
 }

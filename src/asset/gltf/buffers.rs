@@ -55,6 +55,12 @@ impl Buffers {
         all?.get(..*self.lengths.get(index)?)
     }
 
+    /// Declared bytes of those that were read.
+    pub(super) fn total(&self) -> usize {
+        let read = (0..self.lengths.len()).filter_map(|i| self.bytes(i));
+        read.map(<[u8]>::len).sum()
+    }
+
     /// Reads the bytes of a buffer, unless that has been tried.
     ///
     /// # Errors

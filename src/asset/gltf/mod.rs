@@ -27,5 +27,7 @@ mod source;
 mod textures;
 mod triangles;
 mod uri;
+mod uses;
+mod validate;
 
 pub(super) use model::read;

@@ -8,8 +8,11 @@ use super::buffers::Buffers;
 use super::container::Container;
 use super::layout::{Layouts, items, natural};
 use super::uri::{self, Uri};
+use super::uses::Uses;
+use super::validate::{self, Report, Rules, Usages};
 use crate::asset::{Loader, codes};
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Severity};
+use gltf::json::validation::Validate;
 use serde_json::Value;
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
@@ -59,25 +62,45 @@ impl Source {
         let bytes = loader.read(path).map_err(one)?;
         let container = Container::open(bytes, warnings).map_err(one)?;
         let json = parse(container.json()).map_err(one)?;
-        let document = typed(&json).map_err(one)?;
+        let is_binary = container.is_binary();
         let layouts = Layouts::of(&json);
-        let buffers = Buffers::of(container, &json);
-        let mut source = Source {
-            path: path.to_owned(),
-            json,
-            document,
-            layouts,
-            buffers,
+        let uses = Uses::of(&json, &layouts);
+        let mut buffers = Buffers::of(container, &json);
+        let mut report = Report::default();
+        let mut rules = Rules {
+            json: &json,
+            layouts: &layouts,
+            uses: &uses,
+            report: &mut report,
+            usages: Usages::default(),
         };
-        let mut errors = Vec::new();
-        for index in 0..items(&source.json, "buffers").len() {
-            errors.extend(source.buffers.load(loader, path, &source.json, index).err());
+        validate::check(&mut rules);
+        for index in 0..items(&json, "buffers").len() {
+            let needed = uses.buffers.contains(&index);
+            if needed || worth_reading(&json, path, index, is_binary) {
+                let read = buffers.load(loader, path, &json, index);
+                read.unwrap_or_else(|e| rules.report.add(if needed { e } else { unneeded(e) }));
+            }
         }
+        validate::check_elements(&mut rules, &buffers);
+        validate::check_images(&mut rules, &buffers, path);
+        let (mut errors, found) = report.finish();
+        warnings.extend(found);
         if errors.is_empty() {
-            Ok(source)
-        } else {
-            Err(errors)
+            match typed(&json) {
+                Ok(document) => {
+                    return Ok(Source {
+                        path: path.to_owned(),
+                        json,
+                        document,
+                        layouts,
+                        buffers,
+                    });
+                }
+                Err(error) => errors.push(error),
+            }
         }
+        Err(errors)
     }
 
     /// The elements of an accessor as f64.
@@ -155,14 +178,59 @@ fn parse(text: &str) -> Result<Value, Diagnostic> {
     })
 }
 
-/// The typed document of a JSON.
+/// The typed document of a JSON that the validator has passed. The typed crate's own validation is the last net.
 fn typed(json: &Value) -> Result<gltf::Document, Diagnostic> {
-    let error = |says: String| {
+    let error = |pointer: &str, says: String| {
         Diagnostic::error(codes::GLTF_VALUE, says)
-            .pointer("")
+            .pointer(pointer)
             .hint("export the file again as glTF 2.0")
     };
-    let text = json.to_string();
-    let root = gltf::json::Root::from_str(&text).map_err(|e| error(e.to_string()))?;
-    gltf::Document::from_json(root).map_err(|e| error(e.to_string()))
+    let read = gltf::json::deserialize::from_value(validate::strip(json));
+    let root: gltf::json::Root = read.map_err(|e| error("", e.to_string()))?;
+    let mut first = None;
+    root.validate(&root, gltf::json::Path::new, &mut |path, flaw| {
+        let path = path().to_string();
+        // A primitive without positions shows nothing, and the validator has said so.
+        if !path.contains("attributes[\"POSITION\"]") {
+            first.get_or_insert((path, flaw));
+        }
+    });
+    match first {
+        Some((path, flaw)) => Err(error(&pointer(&path), flaw.to_string())),
+        None => Ok(gltf::Document::from_json_without_validation(root)),
+    }
+}
+
+/// `meshes[0].primitives[1]` as `/meshes/0/primitives/1`.
+fn pointer(path: &str) -> String {
+    let steps = path
+        .split(['.', '[', ']', '"', ' ', '='])
+        .filter(|step| !step.is_empty());
+    steps.map(|step| format!("/{step}")).collect()
+}
+
+/// What is wrong with a buffer that the scene does not need.
+fn unneeded(error: Diagnostic) -> Diagnostic {
+    Diagnostic {
+        severity: Severity::Warning,
+        code: codes::GLTF_ODD_BUFFER,
+        ..error
+    }
+}
+
+/// Whether a buffer that the scene does not need is read for the validator: where that costs little.
+fn worth_reading(json: &Value, document: &Path, index: usize, is_binary: bool) -> bool {
+    /// Bytes of the largest file that is read for nothing else.
+    const LARGEST: u64 = 1 << 24;
+    let uri = json
+        .pointer(&format!("/buffers/{index}/uri"))
+        .and_then(Value::as_str);
+    match uri.map(|uri| uri::resolve(document, uri)) {
+        Some(Ok(Uri::File(path))) => {
+            !std::fs::metadata(path).is_ok_and(|meta| meta.len() > LARGEST)
+        }
+        Some(_) => true,
+        // Only in a GLB must it be somewhere.
+        None => is_binary,
+    }
 }
