@@ -203,7 +203,8 @@ fn run<'a>(
         return Err(unreadable(index, says));
     }
     let all = view_bytes(buffers, &view, view_index)?;
-    let len = span(elements.count, stride, size);
+    let extent = elements.shape.extent(elements.component);
+    let len = span(elements.count, stride, extent);
     let end = len.and_then(|len| offset.checked_add(len));
     let Some(bytes) = end.and_then(|end| all.get(offset..end)) else {
         let count = elements.count;
@@ -221,10 +222,10 @@ fn run<'a>(
 }
 
 /// Bytes from the start of the first element to the end of the last.
-pub(super) fn span(count: usize, stride: usize, size: usize) -> Option<usize> {
+pub(super) fn span(count: usize, stride: usize, extent: usize) -> Option<usize> {
     match count {
         0 => Some(0),
-        _ => stride.checked_mul(count - 1)?.checked_add(size),
+        _ => stride.checked_mul(count - 1)?.checked_add(extent),
     }
 }
 

@@ -111,9 +111,14 @@ impl Shape {
         }
     }
 
-    /// Bytes of an element, padding of its columns included.
+    /// Bytes from one element to the next where no stride says otherwise.
     pub(super) fn size(self, component: Component) -> usize {
         self.columns * self.column_stride(component)
+    }
+
+    /// Bytes from the start of an element to the end of its last component: without the padding of its last column.
+    pub(super) fn extent(self, component: Component) -> usize {
+        (self.columns - 1) * self.column_stride(component) + self.rows * component.size()
     }
 }
 

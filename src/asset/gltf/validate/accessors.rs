@@ -188,7 +188,7 @@ fn fits(
         );
         rules.warn(codes::GLTF_LAYOUT, pointer, says);
     }
-    let len = span(count, view.stride.unwrap_or(size), size);
+    let len = span(count, view.stride.unwrap_or(size), shape.extent(component));
     let end = len.and_then(|len| offset.checked_add(len));
     if end.is_none_or(|end| end > view.len) {
         let says = format!(

@@ -22,13 +22,13 @@ pub(in crate::asset::gltf) fn strip(json: &Value) -> Value {
     let count = |name: &str| items(json, name).len();
     root["accessors"] = vec![accessor(); count("accessors")].into();
     root["images"] = vec![json!({ "uri": "" }); count("images").max(1)].into();
-    for name in [
-        "buffers",
-        "bufferViews",
-        "extensionsRequired",
-        "extensionsUsed",
-    ] {
+    root["buffers"] = json!([{ "byteLength": 1 }]);
+    root["bufferViews"] = json!([{ "buffer": 0, "byteLength": 1 }]);
+    for name in ["extensionsRequired", "extensionsUsed"] {
         root.as_object_mut().map(|root| root.remove(name));
+    }
+    for scene in elements(&mut root, "scenes").filter(|scene| scene.get("nodes").is_none()) {
+        scene["nodes"] = json!([]);
     }
     for texture in elements(&mut root, "textures") {
         texture["source"] = 0.into();
@@ -83,10 +83,10 @@ fn unusable_lights(root: &mut Value) {
     }
 }
 
-/// A stand-in: accessors are read from the JSON.
+/// A stand-in: accessors, like buffers and their views, are read from the JSON.
 fn accessor() -> Value {
     let bound = [0.0; 3];
-    json!({ "componentType": 5126, "type": "VEC3", "count": 1, "min": bound, "max": bound })
+    json!({ "bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 1, "min": bound, "max": bound })
 }
 
 fn elements<'a>(object: &'a mut Value, name: &str) -> impl Iterator<Item = &'a mut Value> {

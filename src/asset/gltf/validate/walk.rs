@@ -168,10 +168,6 @@ impl Walk<'_> {
             }
             (Kind::Object(object), Value::Object(map)) => self.object(map, object, care, pointer),
             (Kind::Attributes, Value::Object(map)) => self.attributes(map, care, pointer),
-            _ if !value.is_u64() && natural(value).is_some() && !matches!(kind, Kind::Any) => {
-                let says = format!("the integer {value} is written with a fraction");
-                self.report.warning(codes::GLTF_ODD_VALUE, pointer, says);
-            }
             _ => {}
         }
     }
