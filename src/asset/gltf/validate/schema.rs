@@ -14,8 +14,6 @@ pub(super) enum Care {
 /// What a value may be.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Kind {
-    /// Anything.
-    Any,
     Bool,
     Text,
     /// `<major>.<minor>`.

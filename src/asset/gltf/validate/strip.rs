@@ -21,7 +21,7 @@ pub(in crate::asset::gltf) fn strip(json: &Value) -> Value {
         .unwrap_or_else(|| json!({}));
     let count = |name: &str| items(json, name).len();
     root["accessors"] = vec![accessor(); count("accessors")].into();
-    root["images"] = vec![json!({ "uri": "" }); count("images").max(1)].into();
+    root["images"] = vec![json!({ "uri": "" }); count("images")].into();
     root["buffers"] = json!([{ "byteLength": 1 }]);
     root["bufferViews"] = json!([{ "buffer": 0, "byteLength": 1 }]);
     for name in ["extensionsRequired", "extensionsUsed"] {
@@ -29,9 +29,6 @@ pub(in crate::asset::gltf) fn strip(json: &Value) -> Value {
     }
     for scene in elements(&mut root, "scenes").filter(|scene| scene.get("nodes").is_none()) {
         scene["nodes"] = json!([]);
-    }
-    for texture in elements(&mut root, "textures") {
-        texture["source"] = 0.into();
     }
     unknown_modes(json, &mut root);
     unusable_cameras(&mut root);

@@ -25,13 +25,6 @@ pub(super) fn check(
         return;
     };
     let place = format!("{pointer}/attributes");
-    if !attributes.contains_key("POSITION") && !attributes.is_empty() {
-        rules.warn(
-            codes::GLTF_ODD_PRIMITIVE,
-            &place,
-            "a primitive without POSITION shows nothing",
-        );
-    }
     sets(rules, attributes, &place);
     let mut vertices = None;
     let position = attributes.get_key_value("POSITION");
@@ -69,7 +62,7 @@ pub(super) fn check(
     if let Some(count) = indices.or(vertices) {
         corners(rules, primitive, count, pointer);
     }
-    texture_coordinates(rules, primitive, attributes, pointer);
+    texture_coordinates(rules, primitive, used, attributes, pointer);
 }
 
 /// The accessor behind an index, if it is well formed.
@@ -179,10 +172,11 @@ fn corners(rules: &mut Rules, primitive: &Value, count: usize, pointer: &str) {
     rules.warn(codes::GLTF_ODD_PRIMITIVE, pointer, says);
 }
 
-/// The material's textures find their set of coordinates.
+/// The material's textures find their set of coordinates. Those that are shown are told of where they are read.
 fn texture_coordinates(
     rules: &mut Rules,
     primitive: &Value,
+    used: bool,
     attributes: &Map<String, Value>,
     pointer: &str,
 ) {
@@ -193,6 +187,7 @@ fn texture_coordinates(
     };
     let others = ["/normalTexture", "/occlusionTexture"];
     let places = texture_infos(material).into_iter().map(|(place, _)| place);
+    let places = places.filter(|_| !used);
     for place in places.chain(others) {
         let Some(info) = material.pointer(place) else {
             continue;

@@ -28,7 +28,6 @@ pub(super) fn check(json: &Value, report: &mut Report) {
 /// Whether a value alone is of a kind, whatever its parts and its range.
 pub(super) fn is_of(json: &Value, value: &Value, kind: &Kind) -> bool {
     match kind {
-        Kind::Any => true,
         Kind::Bool => value.is_boolean(),
         Kind::Text => value.is_string(),
         Kind::Version => value.as_str().is_some_and(is_version),
@@ -73,7 +72,6 @@ fn is_uri(text: &str) -> bool {
 /// What a value of a kind is, for a message.
 fn meant(kind: &Kind) -> String {
     match kind {
-        Kind::Any => "anything".into(),
         Kind::Bool => "true or false".into(),
         Kind::Text => "a string".into(),
         Kind::Version => "a version like \"2.0\"".into(),
