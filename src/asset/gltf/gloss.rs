@@ -101,7 +101,7 @@ impl Approximated {
             .map(|(became, of)| format!("{became}: {}", names(of)))
             .collect();
         let says = format!(
-            "half-rough, half-metallic and half-clear surfaces are not modelled; shown as {}",
+            "rough gloss, rough metal and blends of kinds are not modelled; shown as {}",
             groups.join("; ")
         );
         let warning = Diagnostic::warning(codes::GLTF_GLOSS, says).pointer(first);

@@ -138,18 +138,15 @@ fn say_at_rest(source: &Source, notes: &mut Notes) {
     let moving = [
         (animations, "animations", "/animations"),
         (skins, "skins", "/skins"),
-        (morphs, "meshes with morph targets", "/meshes"),
+        (morphs, "morph targets", "/meshes"),
     ];
     let moving: Vec<_> = moving.into_iter().filter(|(n, ..)| *n > 0).collect();
     let Some((_, _, first)) = moving.first() else {
         return;
     };
-    let list: Vec<String> = moving
-        .iter()
-        .map(|(n, of, _)| format!("{n} {of}"))
-        .collect();
+    let list: Vec<String> = moving.iter().map(|(n, of, _)| format!("{of} ({n})")).collect();
     let says = format!(
-        "{} are not modelled: everything is at rest",
+        "not modelled, and everything is at rest: {}",
         list.join(", ")
     );
     let warning = Diagnostic::warning(codes::GLTF_AT_REST, says).pointer(*first);
