@@ -126,5 +126,3 @@ pub const GLTF_IMAGE_MISSING: &str = "W142";
 pub const GLTF_WITHOUT_UV: &str = "W143";
 /// Unlit materials of a glTF file, which are shown as light sources.
 pub const GLTF_UNLIT: &str = "W144";
-/// Vertex colours of a glTF file that are not numbers from 0 to 1.
-pub const GLTF_COLOR: &str = "W145";

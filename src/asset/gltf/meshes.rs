@@ -42,18 +42,6 @@ const BAD_NORMAL: Topic = Topic {
     hint: "export the normals again, or say `normals: Flat` or `Smooth`",
 };
 
-const BAD_UV: Topic = Topic {
-    code: codes::BAD_UV,
-    says: "corners have a uv that is not a finite number, which is ignored",
-    hint: "unwrap the mesh again",
-};
-
-const BAD_COLOR: Topic = Topic {
-    code: codes::GLTF_COLOR,
-    says: "corners have a colour that is not between 0 and 1, which is brought there",
-    hint: "vertex colours are factors, from 0 to 1",
-};
-
 /// A mesh, but for its materials.
 pub(super) struct Shaped {
     pub(super) mesh: Mesh,
@@ -308,8 +296,6 @@ impl<'a> Builder<'a> {
             for vertex in vertices {
                 let read = stream.as_ref().and_then(|uvs| uvs.at(vertex));
                 let finite = read.filter(|[u, v]: &[f64; 2]| u.is_finite() && v.is_finite());
-                let lost = usize::from(read.is_some() && finite.is_none());
-                notes.add_many(&BAD_UV, lost, &part.place);
                 // In glTF v points down (section 3.8.1).
                 uvs.push(finite.map(|[u, v]| DVec2::new(u, 1.0 - v)));
             }
@@ -318,8 +304,6 @@ impl<'a> Builder<'a> {
             for vertex in vertices {
                 let read = streams.colors.as_ref().and_then(|colors| colors.at(vertex));
                 let color: [f64; 3] = read.unwrap_or([1.0; 3]);
-                let bad = color.iter().any(|c| !(0.0..=1.0).contains(c));
-                notes.add_many(&BAD_COLOR, usize::from(bad), &part.place);
                 // `max` first: it turns what is no number into 0.
                 mesh.colors.push(color.map(|c| c.max(0.0).min(1.0) as f32));
             }

@@ -144,7 +144,10 @@ fn say_at_rest(source: &Source, notes: &mut Notes) {
     let Some((_, _, first)) = moving.first() else {
         return;
     };
-    let list: Vec<String> = moving.iter().map(|(n, of, _)| format!("{of} ({n})")).collect();
+    let list: Vec<String> = moving
+        .iter()
+        .map(|(n, of, _)| format!("{of} ({n})"))
+        .collect();
     let says = format!(
         "not modelled, and everything is at rest: {}",
         list.join(", ")
@@ -165,3 +168,6 @@ fn nothing() -> Diagnostic {
         .pointer("")
         .hint("export the objects themselves with the file")
 }
+
+#[cfg(test)]
+mod tests;

@@ -128,11 +128,9 @@ fn has_inverse(linear: &DMat3) -> bool {
 
 /// Of length 1; the identity for one without a direction.
 fn unit_quaternion(q: [f64; 4]) -> [f64; 4] {
-    let largest = q.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
-    let scaled = q.map(|c| c / largest);
-    let length = scaled.iter().fold(0.0, |sum, c| sum + c * c).sqrt();
-    if largest > 0.0 && length.is_finite() {
-        scaled.map(|c| c / length)
+    let length = q.iter().fold(0.0, |sum, c| sum + c * c).sqrt();
+    if length.is_normal() {
+        q.map(|c| c / length)
     } else {
         [0.0, 0.0, 0.0, 1.0]
     }
