@@ -1,11 +1,12 @@
-//! Files to arrays: meshes (OBJ with MTL) and textures, behind ids in an immutable store.
+//! Files to arrays: meshes (OBJ with MTL, glTF) and textures, behind ids in an immutable store.
 //!
 //! Stage two. Enter: paths that a scene names. Leave: an immutable [`AssetStore`] and ids into it, or diagnostics with
-//! file and line.
+//! file and line, or file and JSON pointer.
 //!
 //! ```text
 //!  OBJ ─▶ text ─▶ scan (lines, indices, groups of equal attributes) ─▶ tobj ─▶ obj (triangles in file order) ─▶ Mesh
 //!  MTL ─▶ text ─▶ mtl ─▶ MeshMaterial        PNG, JPEG ─▶ texture ─▶ Texture
+//!  glTF, GLB ─▶ gltf (its own picture) ─▶ Model of nodes, Meshes, MeshMaterials, Textures
 //! ```
 //!
 //! Deliberately absent: the scene, the world, pixels of the film.
@@ -51,7 +52,7 @@ pub struct ModelId(pub u32);
 pub struct Mesh {
     /// The file.
     pub path: PathBuf,
-    /// Vertex positions as authored.
+    /// Vertex positions as authored. Of a glTF file, only those that a triangle uses, in order of first use.
     pub positions: Vec<DVec3>,
     /// Position index of each corner; length `3 * triangles`. Triangles are in file order after triangulation, without
     /// those that have no area: these are dropped and do not count.
@@ -304,7 +305,7 @@ pub enum Filter {
 /// A decoded image.
 #[derive(Clone, Debug)]
 pub struct Texture {
-    /// The file.
+    /// The file, or the glTF file that holds it.
     pub path: PathBuf,
     /// Texels per row.
     pub width: u32,

@@ -275,7 +275,7 @@ pub struct EntityDesc {
     pub spin: Option<SpinDesc>,
     /// Emitted radiance in W·sr⁻¹·m⁻².
     pub emissive: Option<[f64; 3]>,
-    /// Normals of a mesh; default `File`, and `Smooth(angle_deg: 60)` where the file has none.
+    /// Normals of a mesh; default `File`, and where the file has none, `Smooth(angle_deg: 60)` for OBJ, `Flat` for glTF.
     pub normals: Option<NormalsDesc>,
     /// A camera at this entity, looking along its −Z.
     pub camera: Option<CameraDesc>,
