@@ -302,3 +302,6 @@ pub(super) fn sparse_places(
     let sparse = layouts.accessor(index)?.sparse.as_ref()?;
     places(layouts, buffers, index, sparse).ok()
 }
+
+#[cfg(test)]
+mod tests;

@@ -196,3 +196,91 @@ fn chunk_name(kind: u32) -> String {
         other => format!("unknown (0x{other:08X})"),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A GLB of chunks, with a declared length that is right.
+    fn glb(chunks: &[(u32, &[u8])]) -> Vec<u8> {
+        let mut bytes = [MAGIC, &2_u32.to_le_bytes(), &[0; 4]].concat();
+        for (kind, body) in chunks {
+            bytes.extend((body.len() as u32).to_le_bytes());
+            bytes.extend(kind.to_le_bytes());
+            bytes.extend_from_slice(body);
+        }
+        let length = bytes.len() as u32;
+        bytes[8..12].copy_from_slice(&length.to_le_bytes());
+        bytes
+    }
+
+    fn open(bytes: &[u8]) -> Result<(Container, Vec<Diagnostic>), Diagnostic> {
+        let mut warnings = Vec::new();
+        Container::open(bytes.to_vec(), &mut warnings).map(|container| (container, warnings))
+    }
+
+    fn code(bytes: &[u8]) -> &'static str {
+        open(bytes).expect_err("a broken container").code
+    }
+
+    fn warnings(bytes: &[u8]) -> usize {
+        open(bytes).expect("a readable container").1.len()
+    }
+
+    #[test]
+    fn parts_are_found() {
+        let (container, warnings) = open(&glb(&[(JSON, b"{}  "), (BIN, b"abcd")])).expect("a GLB");
+        assert_eq!(
+            (container.json(), container.binary()),
+            ("{}  ", Some(&b"abcd"[..]))
+        );
+        assert!(warnings.is_empty() && container.is_binary());
+        let (container, warnings) = open(b"{}").expect("text");
+        assert_eq!((container.json(), container.binary()), ("{}", None));
+        assert!(warnings.is_empty() && !container.is_binary());
+        // Unknown chunks are ignored.
+        assert_eq!(warnings_of_unknown(), 0);
+    }
+
+    fn warnings_of_unknown() -> usize {
+        warnings(&glb(&[(JSON, b"{}  "), (BIN, b"abcd"), (7, b"....")]))
+    }
+
+    #[test]
+    fn what_is_odd_is_read_with_a_warning() {
+        assert_eq!(warnings(b"\xEF\xBB\xBF{}"), 1);
+        assert_eq!(warnings(&glb(&[(JSON, b"{}")])), 1);
+        assert_eq!(
+            warnings(&glb(&[(JSON, b"{}  "), (7, b"...."), (BIN, b"abcd")])),
+            1
+        );
+        let trailing = [&glb(&[(JSON, b"{}  ")])[..], b"junk"].concat();
+        assert_eq!(warnings(&trailing), 1);
+    }
+
+    #[test]
+    fn what_is_broken_is_refused() {
+        let whole = glb(&[(JSON, b"{}  "), (BIN, b"abcd")]);
+        for end in 4..whole.len() {
+            // Cut between the chunks only the declared length is wrong.
+            if end != whole.len() - 12 {
+                assert_eq!(code(&whole[..end]), "E120", "cut at {end}");
+            }
+        }
+        assert_eq!(code(&glb(&[])), "E120");
+        assert_eq!(code(&glb(&[(JSON, b"")])), "E120");
+        assert_eq!(code(&glb(&[(BIN, b"abcd"), (JSON, b"{}  ")])), "E120");
+        assert_eq!(code(&glb(&[(JSON, b"{}  "), (JSON, b"{}  ")])), "E120");
+        assert_eq!(
+            code(&glb(&[(JSON, b"{}  "), (BIN, b"abcd"), (BIN, b"abcd")])),
+            "E120"
+        );
+        let mut huge = whole.clone();
+        huge[12..16].copy_from_slice(&u32::MAX.to_le_bytes());
+        assert_eq!(code(&huge), "E120");
+        let mut old = whole;
+        old[4] = 1;
+        assert_eq!(code(&old), "E121");
+        assert_eq!(code(b"\xFF\xFE"), "E120");
+    }
+}

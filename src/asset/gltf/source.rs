@@ -46,61 +46,41 @@ impl Source {
     /// # Errors
     /// Everything that keeps the file from being used.
     pub(super) fn open(loader: &mut Loader, path: &Path) -> Result<Source, Vec<Diagnostic>> {
+        let bytes = loader.read(path).map_err(|e| vec![e])?;
         let mut warnings = Vec::new();
-        let source = Source::read(loader, path, &mut warnings);
+        let source = Source::of_bytes(loader, path, bytes, &mut warnings);
         let here = |d: Diagnostic| if d.file.is_none() { d.in_file(path) } else { d };
         loader.warnings.extend(warnings.into_iter().map(here));
         source.map_err(|errors| errors.into_iter().map(here).collect())
     }
 
-    fn read(
+    /// Opens the bytes of a file.
+    ///
+    /// # Errors
+    /// As for [`Source::open`], without the file's name.
+    pub(super) fn of_bytes(
         loader: &mut Loader,
         path: &Path,
+        bytes: Vec<u8>,
         warnings: &mut Vec<Diagnostic>,
     ) -> Result<Source, Vec<Diagnostic>> {
-        let one = |error| vec![error];
-        let bytes = loader.read(path).map_err(one)?;
-        let container = Container::open(bytes, warnings).map_err(one)?;
-        let json = parse(container.json()).map_err(one)?;
-        let is_binary = container.is_binary();
+        let container = Container::open(bytes, warnings).map_err(|e| vec![e])?;
+        let json = parse(container.json()).map_err(|e| vec![e])?;
         let layouts = Layouts::of(&json);
-        let uses = Uses::of(&json, &layouts);
-        let mut buffers = Buffers::of(container, &json);
         let mut report = Report::default();
-        let mut rules = Rules {
-            json: &json,
-            layouts: &layouts,
-            uses: &uses,
-            report: &mut report,
-            usages: Usages::default(),
-        };
-        validate::check(&mut rules);
-        for index in 0..items(&json, "buffers").len() {
-            let needed = uses.buffers.contains(&index);
-            if needed || worth_reading(&json, path, index, is_binary) {
-                let read = buffers.load(loader, path, &json, index);
-                read.unwrap_or_else(|e| rules.report.add(if needed { e } else { unneeded(e) }));
-            }
-        }
-        validate::check_elements(&mut rules, &buffers);
-        validate::check_images(&mut rules, &buffers, path);
-        let (mut errors, found) = report.finish();
+        let buffers = examine(loader, path, container, (&json, &layouts), &mut report);
+        let (errors, found) = report.finish();
         warnings.extend(found);
-        if errors.is_empty() {
-            match typed(&json) {
-                Ok(document) => {
-                    return Ok(Source {
-                        path: path.to_owned(),
-                        json,
-                        document,
-                        layouts,
-                        buffers,
-                    });
-                }
-                Err(error) => errors.push(error),
-            }
+        if !errors.is_empty() {
+            return Err(errors);
         }
-        Err(errors)
+        Ok(Source {
+            path: path.to_owned(),
+            document: typed(&json).map_err(|e| vec![e])?,
+            json,
+            layouts,
+            buffers,
+        })
     }
 
     /// The elements of an accessor as f64.
@@ -159,6 +139,39 @@ impl Source {
             .map(|bytes| Image::Embedded(Cow::Borrowed(bytes)))
             .map_err(|e| e.in_file(&self.path))
     }
+}
+
+/// Validates a file, and reads those of its buffers that the scene needs or that cost little to look at.
+fn examine(
+    loader: &mut Loader,
+    path: &Path,
+    container: Container,
+    (json, layouts): (&Value, &Layouts),
+    report: &mut Report,
+) -> Buffers {
+    let is_binary = container.is_binary();
+    let uses = Uses::of(json, layouts);
+    let mut buffers = Buffers::of(container, json);
+    let mut rules = Rules {
+        json,
+        layouts,
+        uses: &uses,
+        report,
+        usages: Usages::default(),
+    };
+    if !validate::check(&mut rules) {
+        return buffers;
+    }
+    for index in 0..items(json, "buffers").len() {
+        let needed = uses.buffers.contains(&index);
+        if needed || worth_reading(json, path, index, is_binary) {
+            let read = buffers.load(loader, path, json, index);
+            read.unwrap_or_else(|e| rules.report.add(if needed { e } else { unneeded(e) }));
+        }
+    }
+    validate::check_elements(&mut rules, &buffers);
+    validate::check_images(&mut rules, &buffers, path);
+    buffers
 }
 
 /// The JSON of a text.

@@ -24,6 +24,8 @@ mod schema;
 mod skins;
 mod strip;
 mod tables;
+#[cfg(test)]
+mod tests;
 mod usages;
 mod vertices;
 mod walk;
@@ -70,10 +72,11 @@ impl Rules<'_> {
     }
 }
 
-/// Checks everything that the JSON alone can tell.
-pub(super) fn check(rules: &mut Rules) {
+/// Checks everything that the JSON alone can tell. False for a file of another version, whose places mean other things.
+pub(super) fn check(rules: &mut Rules) -> bool {
     if let Some(error) = version(rules.json) {
-        return rules.report.add(error);
+        rules.report.add(error);
+        return false;
     }
     minimum_version(rules);
     walk::check(rules.json, rules.report);
@@ -84,6 +87,7 @@ pub(super) fn check(rules: &mut Rules) {
     skins::check(rules, &parents);
     animations::check(rules);
     looks::check(rules);
+    true
 }
 
 /// The error of a file that says it is not glTF 2 (section 3.2), or is built like a glTF 1.0 one.

@@ -54,7 +54,7 @@ fn unusable_cameras(root: &mut Value) {
     let mut bad = BTreeSet::new();
     for (i, camera) in elements(root, "cameras").enumerate() {
         let kind = camera.get("type").and_then(Value::as_str);
-        if !kind.is_some_and(|kind| camera.get(kind).is_some()) {
+        if kind.is_none_or(|kind| camera.get(kind).is_none()) {
             *camera =
                 json!({ "type": "perspective", "perspective": { "yfov": 1.0, "znear": 1.0 } });
             bad.insert(i);

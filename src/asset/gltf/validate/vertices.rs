@@ -76,7 +76,7 @@ pub(super) fn alignment(rules: &mut Rules, accessor: &Accessor, pointer: &str) {
     let view = accessor.view.and_then(|view| rules.layouts.view(view));
     let Some(view) = view else { return };
     let stride = view.stride.unwrap_or(accessor.size());
-    if accessor.offset % 4 != 0 || stride % 4 != 0 {
+    if !accessor.offset.is_multiple_of(4) || !stride.is_multiple_of(4) {
         let says = format!(
             "elements every {stride} bytes from byte {} are not aligned to 4 bytes",
             accessor.offset
@@ -158,7 +158,7 @@ fn indices(rules: &mut Rules, primitive: &Value, used: bool, pointer: &str) -> O
 fn corners(rules: &mut Rules, primitive: &Value, count: usize, pointer: &str) {
     let mode = primitive.get("mode").map_or(Some(TRIANGLES), natural);
     let says = match mode {
-        Some(TRIANGLES) if count % 3 != 0 => {
+        Some(TRIANGLES) if !count.is_multiple_of(3) => {
             format!(
                 "{count} corners are no whole triangles: the last {} are dropped",
                 count % 3

@@ -84,7 +84,7 @@ fn meant(kind: &Kind) -> String {
         Kind::Integer(0) => "a non-negative integer".into(),
         Kind::Integer(least) => format!("an integer of at least {least}"),
         Kind::Number(_) => "a number".into(),
-        Kind::Numbers(lengths, _) if lengths.is_empty() => "an array of numbers".into(),
+        Kind::Numbers([], _) => "an array of numbers".into(),
         Kind::Numbers(lengths, _) => {
             let lengths: Vec<String> = lengths.iter().map(usize::to_string).collect();
             format!("an array of {} numbers", lengths.join(", "))

@@ -1,0 +1,127 @@
+//! Cameras, lights, materials, images and textures.
+
+use super::{data, png, silent, tells};
+use serde_json::{Value, json};
+
+#[test]
+fn cameras() {
+    let place = "/cameras/0/perspective";
+    tells(
+        "W133",
+        place,
+        &[("/cameras/0/perspective/zfar", json!(0.1))],
+    );
+    tells(
+        "W133",
+        "/cameras/0/perspective/yfov",
+        &[("/cameras/0/perspective/yfov", json!(4))],
+    );
+    tells(
+        "W120",
+        "/cameras/0/perspective/yfov",
+        &[("/cameras/0/perspective/yfov", json!(0))],
+    );
+    tells(
+        "W120",
+        place,
+        &[("/cameras/0/perspective/znear", Value::Null)],
+    );
+    tells(
+        "W133",
+        "/cameras/0",
+        &[("/cameras/0/perspective", Value::Null)],
+    );
+    tells(
+        "W133",
+        "/cameras/0",
+        &[("/cameras/0/type", json!("orthographic"))],
+    );
+    let flat = json!({ "xmag": 1, "ymag": 1, "znear": 0, "zfar": 1 });
+    tells(
+        "W133",
+        "/cameras/0",
+        &[("/cameras/0/orthographic", flat.clone())],
+    );
+    let second = |flat: Value| {
+        (
+            "/cameras/1",
+            json!({ "type": "orthographic", "orthographic": flat }),
+        )
+    };
+    silent(&[second(flat.clone())]);
+    let zero = ("/cameras/1/orthographic/xmag", json!(0));
+    tells(
+        "W133",
+        "/cameras/1/orthographic/xmag",
+        &[second(flat.clone()), zero],
+    );
+    let equal = ("/cameras/1/orthographic/zfar", json!(0));
+    tells("W133", "/cameras/1/orthographic", &[second(flat), equal]);
+}
+
+#[test]
+fn lights() {
+    let place = "/extensions/KHR_lights_punctual/lights/0";
+    let spot = format!("{place}/spot");
+    tells("W133", place, &[(&spot, Value::Null)]);
+    let angle = format!("{spot}/innerConeAngle");
+    tells("W133", &spot, &[(&angle, json!(0.5))]);
+    silent(&[(&angle, json!(0.4))]);
+    let angle = format!("{spot}/outerConeAngle");
+    tells("W133", &angle, &[(&angle, json!(2))]);
+    silent(&[(&angle, json!(1.570_796_4))]);
+    let kind = format!("{place}/type");
+    tells("W120", &kind, &[(&kind, json!("area"))]);
+}
+
+#[test]
+fn materials() {
+    let place = "/materials/0/extensions/KHR_materials_ior/ior";
+    tells("W133", place, &[(place, json!(0.5))]);
+    silent(&[(place, json!(0))]);
+    // A cutoff that does nothing is no harm.
+    silent(&[("/materials/0/alphaMode", json!("OPAQUE"))]);
+}
+
+#[test]
+fn images() {
+    tells("E124", "/images/0", &[("/images/0", json!({}))]);
+    tells("W126", "/images/1", &[("/images/1", json!({}))]);
+    tells(
+        "W126",
+        "/images/0",
+        &[("/images/0/uri", json!("missing.png"))],
+    );
+    tells(
+        "W126",
+        "/images/0/bufferView",
+        &[("/images/0/mimeType", Value::Null)],
+    );
+    tells(
+        "W126",
+        "/images/0",
+        &[("/images/0/mimeType", json!("image/jpeg"))],
+    );
+    tells(
+        "W126",
+        "/textures/0/source",
+        &[("/images/0/mimeType", json!("image/webp"))],
+    );
+    tells(
+        "W126",
+        "/images/1/uri",
+        &[("/images/1", json!({ "uri": "missing.png" }))],
+    );
+    tells(
+        "W126",
+        "/images/1/uri",
+        &[("/images/1", json!({ "uri": "https://example.org/x.png" }))],
+    );
+    let embedded = |media: &str, bytes: &[u8]| {
+        let uri = data(bytes).replace("application/octet-stream", media);
+        ("/images/1", json!({ "uri": uri }))
+    };
+    silent(&[embedded("image/png", &png())]);
+    tells("W126", "/images/1", &[embedded("image/jpeg", &png())]);
+    tells("W126", "/images/1", &[embedded("image/png", &png()[..20])]);
+}
