@@ -35,6 +35,32 @@ fn images_become_eight_bit_rgb() {
 }
 
 #[test]
+fn alpha_is_kept_where_something_is_transparent() {
+    use png::{BitDepth::Eight, ColorType::*};
+    for (bytes, alpha) in [
+        (
+            png(Rgba, Eight, 2, &[9, 8, 7, 0, 6, 5, 4, 255]),
+            Some([0, 255]),
+        ),
+        (png(Rgba, Eight, 2, &[9, 8, 7, 255, 6, 5, 4, 255]), None),
+        (
+            png(GrayscaleAlpha, Eight, 2, &[9, 3, 6, 200]),
+            Some([3, 200]),
+        ),
+        (png(Rgb, Eight, 2, &[9, 8, 7, 6, 5, 4]), None),
+    ] {
+        let folder = Folder::of(&[("t.png", &bytes)]);
+        let mut loader = Loader::new();
+        let id = loader.texture(&folder.0.join("t.png")).expect("a texture");
+        let store = loader.finish();
+        assert_eq!(
+            store.texture(id).alpha.as_deref(),
+            alpha.as_ref().map(|a| &a[..])
+        );
+    }
+}
+
+#[test]
 fn images_that_cannot_be_used_say_why() {
     let good = png(png::ColorType::Rgb, png::BitDepth::Eight, 1, &[1, 2, 3]);
     let mut huge = good.clone();
