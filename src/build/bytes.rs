@@ -1,6 +1,7 @@
 //! How large the buffers of a scene are.
 
 use crate::flat::{FlatScene, Geometry};
+use std::sync::Arc;
 
 /// A buffer, or buffers of one kind, of a [`FlatScene`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,6 +47,8 @@ pub fn buffer_bytes(scene: &FlatScene) -> Vec<BufferBytes> {
         of_all("triangle places", &|g| buffer("", &g.triangles.place)),
         of_all("corner normals", &|g| buffer("", &g.shading.normals.corner)),
         of_all("corner uvs", &|g| buffer("", &g.shading.uvs)),
+        of_all("corner uvs, second set", &|g| buffer("", &g.shading.uvs1)),
+        of_all("corner colours", &|g| buffer("", &g.shading.colors)),
         of_all("triangle materials", &|g| buffer("", &g.shading.material)),
         of_all("triangle objects", &|g| buffer("", &g.shading.object)),
         of_all("triangle file indices", &|g| {
@@ -58,13 +61,20 @@ pub fn buffer_bytes(scene: &FlatScene) -> Vec<BufferBytes> {
         buffer("sphere objects", &spheres.object),
         buffer("sphere rotations", &spheres.to_local),
         buffer("materials", &scene.materials),
-        texels(scene),
+        images("texels", 3, scene.textures.iter().map(|t| &t.texels)),
+        images(
+            "alphas",
+            1,
+            scene.textures.iter().filter_map(|t| t.alpha.as_ref()),
+        ),
         buffer("light spheres", &scene.lights.spheres),
         BufferBytes {
             name: "light triangles",
             len: triangles.v0.len(),
             bytes: triangles.v0.len() * LIGHT_TRIANGLE,
         },
+        buffer("light triangle places", &triangles.place),
+        buffer("punctual lights", &scene.lights.punctual),
         buffer("light weights", &scene.lights.cumulative),
     ];
     buffers.retain(|b| b.len > 0);
@@ -82,18 +92,19 @@ fn buffer<T>(name: &'static str, elements: &[T]) -> BufferBytes {
     }
 }
 
-fn texels(scene: &FlatScene) -> BufferBytes {
-    let mut images: Vec<(*const u8, usize)> = scene
-        .textures
-        .iter()
-        .map(|t| (t.texels.as_ptr(), t.texels.len()))
-        .collect();
+/// Planes of images, `texel` bytes an element, each plane once.
+fn images<'a>(
+    name: &'static str,
+    texel: usize,
+    planes: impl Iterator<Item = &'a Arc<[u8]>>,
+) -> BufferBytes {
+    let mut images: Vec<(*const u8, usize)> = planes.map(|p| (p.as_ptr(), p.len())).collect();
     images.sort_unstable();
     images.dedup();
     let bytes = images.iter().map(|i| i.1).sum();
     BufferBytes {
-        name: "texels",
-        len: bytes / 3,
+        name,
+        len: bytes / texel,
         bytes,
     }
 }

@@ -1,7 +1,7 @@
 //! Extract: what the build needs of the world, copied out in authoring order, since hecs has none.
 
 use super::meshes::MeshKey;
-use crate::asset::MeshId;
+use crate::asset::{Light, MeshId};
 use crate::flat::ObjectId;
 use crate::world::{
     AuthoringIndex, Camera, Emissive, Material, Normals, Parent, Pose, Shape, Spin,
@@ -15,6 +15,14 @@ pub(crate) struct Extracted {
     pub(crate) camera: (Pose, Camera),
     pub(crate) spheres: Vec<SphereItem>,
     pub(crate) meshes: Vec<MeshItem>,
+    pub(crate) lights: Vec<LightItem>,
+}
+
+/// A light without extent, where it is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LightItem {
+    pub(crate) pose: Pose,
+    pub(crate) light: Light,
 }
 
 /// What every shape has.
@@ -65,6 +73,7 @@ pub(crate) fn extract(world: &World, pose_of: impl Fn(Entity) -> Pose) -> Extrac
         Option<&Material>,
         Option<&Emissive>,
         Option<&Camera>,
+        Option<&Light>,
     )>();
     let mut rows: Vec<_> = query.iter().collect();
     rows.sort_by_key(|row| row.1);
@@ -73,8 +82,9 @@ pub(crate) fn extract(world: &World, pose_of: impl Fn(Entity) -> Pose) -> Extrac
         camera: (Pose::default(), NO_CAMERA),
         spheres: Vec::new(),
         meshes: Vec::new(),
+        lights: Vec::new(),
     };
-    for (entity, index, shape, material, emissive, camera) in rows {
+    for (entity, index, shape, material, emissive, camera, light) in rows {
         let look = Look {
             object: ObjectId(index.entity),
             pose: pose_of(entity),
@@ -98,6 +108,10 @@ pub(crate) fn extract(world: &World, pose_of: impl Fn(Entity) -> Pose) -> Extrac
         if let Some(camera) = camera {
             extracted.camera = (look.pose, *camera);
         }
+        extracted.lights.extend(light.map(|light| LightItem {
+            pose: look.pose,
+            light: *light,
+        }));
     }
     extracted
 }

@@ -4,13 +4,13 @@ use super::bvh::{Accel, Primitives, SphereItem};
 use super::extract::{Extracted, MeshItem};
 use super::instances::{instance, maps};
 use super::lights::{self, Collector};
-use super::materials::Tables;
+use super::materials::{Means, Tables};
 use super::meshes::{Keep, LocalMesh, MeshKey, Part, Soup, corner_normals, slot};
 use super::rebase::to_scene;
 use super::spheres;
 use crate::asset::AssetStore;
 use crate::flat::{
-    Fresnel, Geometry, Instance, Lights, Material, MaterialId, Rebase, Spheres, Texture,
+    Fresnel, Geometry, Instance, LightPlace, Lights, Material, MaterialId, Rebase, Spheres, Texture,
 };
 use crate::math::{Aabb, DAffine3, DVec3, Vec3};
 use std::collections::BTreeMap;
@@ -18,11 +18,12 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// What is kept from frame to frame: functions of a mesh and its normals alone.
+/// What is kept from frame to frame: functions of a mesh and its normals, or of a texture, alone.
 #[derive(Default)]
 pub(crate) struct Cache {
     normals: BTreeMap<MeshKey, Option<Arc<[DVec3]>>>,
     local: BTreeMap<MeshKey, Arc<LocalMesh>>,
+    means: Means,
 }
 
 /// Everything of a frame but its tree and its camera.
@@ -61,16 +62,21 @@ pub(crate) struct Context<'a> {
     pub(crate) rebase: Rebase,
     pub(crate) accel: Accel,
     pub(crate) fresnel: Fresnel,
-    /// Whether texture coordinates are kept.
-    pub(crate) uvs: bool,
+    /// What is kept of every mesh.
+    pub(crate) keep: Keep,
 }
 
 /// Flattens a frame.
 pub(crate) fn flatten(items: &Extracted, context: &Context, cache: &mut Cache) -> Flattened {
-    let mut tables = Tables::new(context.store, context.fresnel);
+    let means = std::mem::take(&mut cache.means);
+    let mut tables = Tables::new(context.store, context.fresnel, means);
     let mut lights = Collector::default();
-    let (spheres, tree_spheres) =
-        spheres::flatten(&items.spheres, &context.rebase, &mut tables, context.uvs);
+    let (spheres, tree_spheres) = spheres::flatten(
+        &items.spheres,
+        &context.rebase,
+        &mut tables,
+        context.keep.uvs,
+    );
     lights.spheres(&spheres, &tables.materials);
     let mut flattener = Flattener {
         context,
@@ -83,7 +89,11 @@ pub(crate) fn flatten(items: &Extracted, context: &Context, cache: &mut Cache) -
         local_trees: Duration::ZERO,
     };
     flattener.meshes(&items.meshes);
+    for light in &items.lights {
+        flattener.lights.punctual(light, &context.rebase);
+    }
     let Flattener { tables, shared, .. } = flattener;
+    flattener.cache.means = tables.means;
     Flattened {
         soup: flattener.soup,
         groups: flattener.groups,
@@ -177,7 +187,7 @@ impl Flattener<'_> {
             to: to_scene(&item.look.pose, &self.context.rebase),
             keep: Keep {
                 normals: smooth,
-                uvs: self.context.uvs,
+                ..self.context.keep
             },
         };
         let material = |prim| slots[slot(mesh, prim)];
@@ -187,8 +197,13 @@ impl Flattener<'_> {
         self.groups
             .push(first as u32..self.soup.triangles.len() as u32);
         for (prim, v) in (0..).zip(&self.soup.triangles[first..]) {
+            let place = LightPlace {
+                prim: first as u32 + prim,
+                instance: None,
+                mirrored: false,
+            };
             self.lights
-                .triangle(*v, material(prim), &self.tables.materials);
+                .triangle(*v, place, material(prim), &self.tables.materials);
         }
     }
 
@@ -211,7 +226,13 @@ impl Flattener<'_> {
                 continue;
             }
             let v = lights::placed(local.triangle(prim), &instance);
-            self.lights.triangle(v, material, &self.tables.materials);
+            let place = LightPlace {
+                prim: prim as u32,
+                instance: Some(self.shared.instances.len() as u32 - 1),
+                mirrored: instance.mirrored,
+            };
+            self.lights
+                .triangle(v, place, material, &self.tables.materials);
         }
     }
 }
@@ -229,7 +250,7 @@ impl Cache {
         let normals = self.normals(item, context.store);
         let mesh = context.store.mesh(item.mesh);
         let compute = || {
-            let local = LocalMesh::new(mesh, normals.as_deref(), context.uvs, context.accel);
+            let local = LocalMesh::new(mesh, normals.as_deref(), context.keep, context.accel);
             Arc::new(local)
         };
         self.local.entry(item.key()).or_insert_with(compute).clone()

@@ -3,10 +3,13 @@
 use super::extract::Look;
 use super::fresnel::internal_reflectance;
 use super::meshes::used_slots;
-use crate::asset::{self, AssetStore, Mesh, MeshMaterial, TextureId};
-use crate::flat::{self, ColorSource, FilterMode, Fresnel, MaterialId, Scatter, WrapMode};
+use crate::asset::{self, AlphaMode, AssetStore, Mesh, MeshMaterial, TextureId, TextureUse};
+use crate::flat::{
+    self, ColorSource, Coverage, FilterMode, Fresnel, MaterialId, Opacity, Scatter, WrapMode,
+};
+use crate::math::SRGB_BYTES;
 use crate::world::{Color, Scattering};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// Albedo of what says nothing about its material.
 const DEFAULT_ALBEDO: f64 = 0.8;
@@ -15,7 +18,10 @@ const DEFAULT_ALBEDO: f64 = 0.8;
 const NO_IOR: f64 = 1.0;
 
 /// What a material is looked up by: its bits.
-type Key = [u32; 10];
+type Key = [u32; 18];
+
+/// Means of textures over all their texels, linear RGB.
+pub(crate) type Means = BTreeMap<TextureId, [f64; 3]>;
 
 /// The tables of a frame while they grow.
 pub(crate) struct Tables<'a> {
@@ -24,11 +30,15 @@ pub(crate) struct Tables<'a> {
     pub(crate) materials: Vec<flat::Material>,
     known: HashMap<Key, MaterialId>,
     pub(crate) textures: Vec<flat::Texture>,
-    sampled: Vec<(TextureId, asset::Wrap, asset::Filter)>,
+    sampled: Vec<TextureUse>,
+    pub(crate) means: Means,
 }
 
+/// What a surface sends out: its mean, and where it comes from if it varies.
+type Emission = ([f32; 3], Option<ColorSource>);
+
 impl<'a> Tables<'a> {
-    pub(crate) fn new(store: &'a AssetStore, fresnel: Fresnel) -> Tables<'a> {
+    pub(crate) fn new(store: &'a AssetStore, fresnel: Fresnel, means: Means) -> Tables<'a> {
         Tables {
             store,
             fresnel,
@@ -36,13 +46,16 @@ impl<'a> Tables<'a> {
             known: HashMap::new(),
             textures: Vec::new(),
             sampled: Vec::new(),
+            means,
         }
     }
 
     /// The material of an entity's surface; `file` is what its mesh file says of the triangle.
     ///
-    /// The entity's material overrides the file's, emission included; an emitter without either reflects nothing.
+    /// The entity's material overrides the file's, emission and opacity included; an emitter without either reflects
+    /// nothing.
     pub(crate) fn resolve(&mut self, look: &Look, file: Option<&MeshMaterial>) -> MaterialId {
+        let file = file.filter(|_| look.material.is_none());
         let (scatter, color, ior) = match (look.material, file) {
             (Some(material), _) => {
                 let (scatter, ior) = scattering(material.scattering);
@@ -50,25 +63,32 @@ impl<'a> Tables<'a> {
             }
             (None, Some(file)) => {
                 let (scatter, ior) = scattering(file.scattering);
-                (scatter, self.file_color(file), ior)
+                (scatter, self.source(file.color, file.texture), ior)
             }
             (None, None) if look.emission.is_some() => {
                 (Scatter::Nothing, constant([0.0; 3]), NO_IOR)
             }
             (None, None) => (Scatter::Diffuse, constant([DEFAULT_ALBEDO; 3]), NO_IOR),
         };
-        let file_emission = file.filter(|_| look.material.is_none()).map(|f| f.emission);
-        let emission = look.emission.or(file_emission).unwrap_or([0.0; 3]);
+        let (emission, emission_source) = match (look.emission, file) {
+            (Some(emission), _) => (emission.map(|c| c as f32), None),
+            (None, Some(file)) => self.emission(file),
+            (None, None) => ([0.0; 3], None),
+        };
         let internal = match scatter {
             Scatter::Plastic => internal_reflectance(ior, self.fresnel),
             _ => 0.0,
         };
+        let opacity = file.map_or(Opacity::Full, |file| self.opacity(&file.opacity));
         self.insert(flat::Material {
             scatter,
             color,
             ior: ior as f32,
             internal_reflectance: internal as f32,
-            emission: emission.map(|c| c as f32),
+            vertex_colors: file.is_some_and(|file| file.vertex_colors),
+            emission,
+            emission_source,
+            opacity,
         })
     }
 
@@ -102,52 +122,129 @@ impl<'a> Tables<'a> {
                 texture,
                 wrap,
                 filter,
-            } => ColorSource::Texture {
-                texture: self.texture(texture, wrap, filter),
-                factor: [1.0; 3],
-            },
+            } => {
+                let of = TextureUse {
+                    wrap: [wrap; 2],
+                    filter,
+                    ..TextureUse::plain(texture)
+                };
+                self.source([1.0; 3], Some(of))
+            }
         }
     }
 
-    fn file_color(&mut self, file: &MeshMaterial) -> ColorSource {
-        match file.texture {
-            None => constant(file.color),
+    fn source(&mut self, factor: [f64; 3], texture: Option<TextureUse>) -> ColorSource {
+        match texture {
+            None => constant(factor),
             Some(of) => ColorSource::Texture {
-                texture: self.texture(of.texture, of.wrap[0], of.filter),
-                factor: file.color.map(|c| c as f32),
+                texture: self.texture(of),
+                factor: factor.map(|c| c as f32),
             },
         }
     }
 
-    fn texture(&mut self, id: TextureId, wrap: asset::Wrap, filter: asset::Filter) -> u32 {
-        let wanted = (id, wrap, filter);
+    /// The mean of a texture's emission is not 0 where any texel shines: its light must be found.
+    fn emission(&mut self, file: &MeshMaterial) -> Emission {
+        let mean = match file.emission_texture {
+            Some(of) => self.mean(of.texture),
+            None => [1.0; 3],
+        };
+        let emission = [0, 1, 2].map(|k| match file.emission[k] * mean[k] {
+            shines if shines > 0.0 => (shines as f32).max(f32::MIN_POSITIVE),
+            _ => 0.0,
+        });
+        let colored = file.vertex_colors && file.scattering == Scattering::Nothing;
+        let varies = emission != [0.0; 3] && (file.emission_texture.is_some() || colored);
+        let source = varies.then(|| self.source(file.emission, file.emission_texture));
+        (emission, source)
+    }
+
+    /// Textures without alpha, and opacities that leave nothing out, cost nothing.
+    fn opacity(&mut self, opacity: &asset::Opacity) -> Opacity {
+        let texture = opacity
+            .texture
+            .filter(|of| self.store.texture(of.texture).alpha.is_some());
+        let factor = opacity.factor as f32;
+        let full = texture.is_none()
+            && match opacity.mode {
+                AlphaMode::Opaque => true,
+                AlphaMode::Mask { cutoff } => factor >= cutoff as f32,
+                AlphaMode::Blend => factor >= 1.0,
+            };
+        if full || opacity.mode == AlphaMode::Opaque {
+            return Opacity::Full;
+        }
+        let coverage = Coverage {
+            factor,
+            texture: texture.map(|of| self.texture(of)),
+        };
+        match opacity.mode {
+            AlphaMode::Mask { cutoff } => Opacity::Mask {
+                coverage,
+                cutoff: cutoff as f32,
+            },
+            AlphaMode::Opaque | AlphaMode::Blend => Opacity::Blend(coverage),
+        }
+    }
+
+    fn texture(&mut self, wanted: TextureUse) -> u32 {
         let place = self.sampled.iter().position(|known| *known == wanted);
         let place = place.unwrap_or_else(|| {
-            let texture = self.store.texture(id);
             self.sampled.push(wanted);
-            self.textures.push(flat::Texture {
-                texels: texture.texels.clone(),
-                width: texture.width,
-                height: texture.height,
-                wrap: match wrap {
-                    asset::Wrap::Repeat => WrapMode::Repeat,
-                    asset::Wrap::Mirror => WrapMode::Mirror,
-                    asset::Wrap::Clamp => WrapMode::Clamp,
-                },
-                filter: match filter {
-                    asset::Filter::Bilinear => FilterMode::Bilinear,
-                    asset::Filter::Nearest => FilterMode::Nearest,
-                },
-            });
+            let texture = self.store.texture(wanted.texture);
+            self.textures.push(bound(texture, &wanted));
             self.textures.len() - 1
         });
         place as u32
     }
 
-    /// Whether any material reads a texture.
-    pub(crate) fn textured(&self) -> bool {
-        !self.textures.is_empty()
+    fn mean(&mut self, id: TextureId) -> [f64; 3] {
+        let texture = self.store.texture(id);
+        *self.means.entry(id).or_insert_with(|| mean(texture))
     }
+}
+
+/// An image as a material reads it.
+fn bound(texture: &asset::Texture, of: &TextureUse) -> flat::Texture {
+    let identity = of.transform == Some([1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+    flat::Texture {
+        texels: texture.texels.clone(),
+        alpha: texture.alpha.clone(),
+        width: texture.width,
+        height: texture.height,
+        uv_set: of.uv_set.min(1),
+        transform: of
+            .transform
+            .filter(|_| !identity)
+            .map(|m| m.map(|x| x as f32)),
+        wrap: of.wrap.map(|wrap| match wrap {
+            asset::Wrap::Repeat => WrapMode::Repeat,
+            asset::Wrap::Mirror => WrapMode::Mirror,
+            asset::Wrap::Clamp => WrapMode::Clamp,
+        }),
+        filter: match of.filter {
+            asset::Filter::Bilinear => FilterMode::Bilinear,
+            asset::Filter::Nearest => FilterMode::Nearest,
+        },
+    }
+}
+
+/// Linear mean of all texels: bytes are counted first, so that the sum is exact.
+fn mean(texture: &asset::Texture) -> [f64; 3] {
+    let mut counts = [[0u64; 256]; 3];
+    let (texels, _) = texture.texels.as_chunks::<3>();
+    for texel in texels {
+        for (counts, byte) in counts.iter_mut().zip(texel) {
+            counts[*byte as usize] += 1;
+        }
+    }
+    let total = texels.len().max(1) as f64;
+    counts.map(|counts| {
+        let sum = counts.iter().zip(SRGB_BYTES.iter());
+        sum.map(|(n, linear)| *n as f64 * f64::from(*linear))
+            .sum::<f64>()
+            / total
+    })
 }
 
 fn scattering(scattering: Scattering) -> (Scatter, f64) {
@@ -166,25 +263,42 @@ fn constant(rgb: [f64; 3]) -> ColorSource {
 }
 
 fn key(material: &flat::Material) -> Key {
-    let (texture, [r, g, b]) = match material.color {
+    let of_source = |source: &ColorSource| match *source {
         ColorSource::Constant(rgb) => (0, rgb),
         ColorSource::Texture { texture, factor } => (texture + 1, factor),
     };
+    let of_coverage = |coverage: &Coverage| {
+        let texture = coverage.texture.map_or(0, |t| t + 1);
+        (texture, coverage.factor)
+    };
+    let (texture, [r, g, b]) = of_source(&material.color);
     let [er, eg, eb] = material.emission;
-    let bits = [
+    let source = material.emission_source.as_ref().map(of_source);
+    let (emission_texture, [sr, sg, sb]) = source.unwrap_or_default();
+    let (mode, (alpha, factor), cutoff) = match &material.opacity {
+        Opacity::Full => (0, (0, 0.0), 0.0),
+        Opacity::Mask { coverage, cutoff } => (1, of_coverage(coverage), *cutoff),
+        Opacity::Blend(coverage) => (2, of_coverage(coverage), 0.0),
+    };
+    let flags = u32::from(material.vertex_colors) | u32::from(source.is_some()) << 1 | mode << 2;
+    let mut key = [0; 18];
+    key[0] = material.scatter as u32;
+    key[1..5].copy_from_slice(&[flags, texture, emission_texture, alpha]);
+    let numbers = [
         r,
         g,
         b,
         er,
         eg,
         eb,
+        sr,
+        sg,
+        sb,
         material.ior,
         material.internal_reflectance,
-    ]
-    .map(f32::to_bits);
-    let mut key = [0; 10];
-    key[0] = material.scatter as u32;
-    key[1] = texture;
-    key[2..].copy_from_slice(&bits);
+        factor,
+        cutoff,
+    ];
+    key[5..].copy_from_slice(&numbers.map(f32::to_bits));
     key
 }

@@ -3,7 +3,7 @@
 use super::rebase::{self, to_local};
 use crate::asset::{Mesh, MeshId};
 use crate::flat::{self, ObjectId, Rebase, Shading};
-use crate::math::{DAffine3, DMat3, DVec3, Vec3, unit};
+use crate::math::{DAffine3, DMat3, DVec2, DVec3, Vec2, Vec3, unit};
 use crate::world::Normals;
 
 /// A mesh with its normals: what is flattened, or what instances share.
@@ -64,10 +64,12 @@ pub(crate) struct Part<'a> {
 }
 
 /// Which cold arrays something requires.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Keep {
     pub(crate) normals: bool,
     pub(crate) uvs: bool,
+    pub(crate) uvs1: bool,
+    pub(crate) colors: bool,
 }
 
 impl Soup {
@@ -106,10 +108,16 @@ impl Soup {
                 self.shading.normals.corner.extend(corners.map(normal));
             }
             if keep.uvs {
-                let uv = |c: usize| mesh.uvs.get(c).copied().flatten().unwrap_or_default();
-                self.shading
-                    .uvs
-                    .extend(corners.map(|c| uv(c).as_vec2().to_array()));
+                let uvs = corners.map(|c| rounded(mesh.uvs.get(c).copied().flatten()));
+                self.shading.uvs.extend(uvs);
+            }
+            if keep.uvs1 {
+                let uvs = corners.map(|c| rounded(mesh.uvs1.get(c).copied().flatten()));
+                self.shading.uvs1.extend(uvs);
+            }
+            if keep.colors {
+                let colors = corners.map(|c| mesh.colors.get(c).copied().unwrap_or([1.0; 3]));
+                self.shading.colors.extend(colors);
             }
             let prim = prim as u32;
             self.shading.file_prim.push(prim);
@@ -117,6 +125,12 @@ impl Soup {
             self.shading.object.extend(object);
         }
     }
+}
+
+/// Texture coordinates in f32, finite; 0 where there are none.
+fn rounded(uv: Option<DVec2>) -> [f32; 2] {
+    let uv = uv.unwrap_or_default().as_vec2();
+    uv.clamp(Vec2::MIN, Vec2::MAX).to_array()
 }
 
 /// A mesh in its local units, for its instances.
@@ -134,7 +148,7 @@ impl LocalMesh {
     pub(crate) fn new(
         mesh: &Mesh,
         normals: Option<&[DVec3]>,
-        uvs: bool,
+        keep: Keep,
         accel: super::Accel,
     ) -> LocalMesh {
         let rebase = rebase::of_mesh(mesh);
@@ -145,7 +159,7 @@ impl LocalMesh {
             to: to_local(&rebase),
             keep: Keep {
                 normals: normals.is_some(),
-                uvs,
+                ..keep
             },
         };
         soup.append(&part, None, |prim| slot(mesh, prim) as u32);

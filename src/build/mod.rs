@@ -29,7 +29,8 @@ use crate::world::{Pose, poses};
 use extract::{Extracted, extract};
 use flatten::{Cache, Context, flatten};
 use hecs::{Entity, World};
-use materials::Tables;
+use materials::{Means, Tables};
+use meshes::Keep;
 use std::collections::HashMap;
 use std::time::{Duration, Instant};
 
@@ -70,8 +71,8 @@ pub struct SceneBuilder {
     store: AssetStore,
     options: BuildOptions,
     rebase: Rebase,
-    /// Whether any texture coordinates are read.
-    uvs: bool,
+    /// What is read of meshes.
+    keep: Keep,
     cache: Cache,
 }
 
@@ -85,7 +86,7 @@ impl SceneBuilder {
             store: store.clone(),
             options,
             rebase: rebase::of_scene(&rest, store),
-            uvs: options.uv_aov || textured(&rest, store),
+            keep: keep(&rest, store, options.uv_aov),
             cache: Cache::default(),
         }
     }
@@ -103,7 +104,7 @@ impl SceneBuilder {
             rebase: self.rebase,
             accel: self.options.accel,
             fresnel: self.options.fresnel,
-            uvs: self.uvs,
+            keep: self.keep,
         };
         let flat = flatten(&extracted, &context, &mut self.cache);
         let flattening = start.elapsed() - extracting - flat.local_trees;
@@ -151,14 +152,20 @@ impl SceneBuilder {
     }
 }
 
-/// Whether any material that occurs reads a texture.
-fn textured(scene: &Extracted, store: &AssetStore) -> bool {
-    let mut tables = Tables::new(store, Fresnel::Off);
+/// What the materials that occur read of meshes.
+fn keep(scene: &Extracted, store: &AssetStore, uv_aov: bool) -> Keep {
+    let mut tables = Tables::new(store, Fresnel::Off, Means::default());
     for item in &scene.spheres {
         tables.resolve(&item.look, None);
     }
     for item in &scene.meshes {
         tables.resolve_slots(&item.look, store.mesh(item.mesh));
     }
-    tables.textured()
+    let reads = |set| tables.textures.iter().any(|t| t.uv_set == set);
+    Keep {
+        normals: false,
+        uvs: uv_aov || reads(0),
+        uvs1: reads(1),
+        colors: tables.materials.iter().any(|m| m.vertex_colors),
+    }
 }

@@ -1,6 +1,6 @@
 //! What a scene requires, read off its buffers.
 
-use crate::flat::{FlatScene, Geometry, Needs, Scatter};
+use crate::flat::{FlatScene, Geometry, Needs, Opacity, Scatter};
 
 /// The needs of a scene whose buffers are complete.
 pub(crate) fn needs(scene: &FlatScene) -> Needs {
@@ -14,9 +14,13 @@ pub(crate) fn needs(scene: &FlatScene) -> Needs {
         instances: !scene.instances.is_empty(),
         smooth_normals: any(|g| !g.shading.normals.corner.is_empty()),
         uvs: any(|g| !g.shading.uvs.is_empty()) || !scene.spheres.to_local.is_empty(),
+        uvs1: any(|g| !g.shading.uvs1.is_empty()),
+        vertex_colors: any(|g| !g.shading.colors.is_empty()),
         textures: !scene.textures.is_empty(),
+        opacity: scene.materials.iter().any(|m| m.opacity != Opacity::Full),
         lens: scene.camera.aperture_radius > 0.0,
         lights: !scene.lights.is_empty(),
+        punctual: !scene.lights.punctual.is_empty(),
         background: scene.background != [0.0; 3],
         diffuse: scatters(Scatter::Diffuse),
         mirror: scatters(Scatter::Mirror),

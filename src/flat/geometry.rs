@@ -24,6 +24,10 @@ pub struct Shading {
     pub normals: Normals,
     /// Corner texture coordinates, v up. Empty unless a textured material or the uv AOV needs them.
     pub uvs: Vec<[f32; 2]>,
+    /// The second set of corner texture coordinates. Empty unless a texture reads it.
+    pub uvs1: Vec<[f32; 2]>,
+    /// Linear corner colours, 1 where the file has none. Empty unless a material reads them.
+    pub colors: Vec<[f32; 3]>,
     /// World geometry: the material. Local geometry: the material *slot*, see [`super::FlatScene::instance_materials`].
     pub material: Vec<u32>,
     /// World geometry: the object of each primitive. Local geometry: empty, its instance knows.

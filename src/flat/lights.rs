@@ -1,7 +1,8 @@
-//! The light table: emissive spheres and triangles, for next-event estimation.
+//! The light table: emissive spheres and triangles, and lights without extent, for next-event estimation.
 //!
-//! A light is chosen with probability `weight / total`, `weight` = area × mean of the RGB radiance; then a point on it:
-//! a triangle's uniformly by area, a sphere's uniformly in the solid angle that it subtends.
+//! A light is chosen with probability `weight / total`, `weight` = power / π, power being the mean of its RGB. For a
+//! surface that is area × radiance; then a point on it: a triangle's uniformly by area, a sphere's uniformly in the solid
+//! angle that it subtends.
 
 /// Emissive triangles in scene space, whatever they are stored in.
 #[derive(Clone, Debug, Default)]
@@ -14,18 +15,65 @@ pub struct LightTriangles {
     pub e2: Vec<[f32; 3]>,
     /// Area in scene units.
     pub area: Vec<f32>,
-    /// Radiance.
+    /// Radiance; its mean where it varies.
     pub radiance: Vec<[f32; 3]>,
+    /// Where to look up what varies over each triangle. Empty unless a material's emission or opacity does.
+    pub place: Vec<LightPlace>,
 }
 
-/// All lights: spheres first, then triangles, each in authoring order.
+/// A light triangle as hits know it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LightPlace {
+    /// Primitive of its geometry.
+    pub prim: u32,
+    /// Index of its instance; `None` in the world geometry.
+    pub instance: Option<u32>,
+    /// Its second and third corner have changed places, since the instance mirrors.
+    pub mirrored: bool,
+}
+
+/// A light without extent, in scene units. f64: what is far away or tiny in scene units stays finite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Punctual {
+    /// Equally into every direction.
+    Point {
+        /// Where.
+        position: [f64; 3],
+        /// Radiant intensity times the square of the rebase's scale: over a squared distance it is irradiance.
+        intensity: [f64; 3],
+    },
+    /// Into a cone; between the angles falling off as the square of (cos θ − `cos_outer`) / (`cos_inner` − `cos_outer`).
+    Spot {
+        /// Where.
+        position: [f64; 3],
+        /// Unit; where it shines to.
+        axis: [f64; 3],
+        /// As of a point, along the axis.
+        intensity: [f64; 3],
+        /// Of the angle from the axis within which it is full.
+        cos_inner: f64,
+        /// Of the angle from the axis beyond which it is nothing.
+        cos_outer: f64,
+    },
+    /// From infinitely far away.
+    Sun {
+        /// Unit, to the light.
+        to_light: [f64; 3],
+        /// Irradiance of a surface that faces it.
+        irradiance: [f64; 3],
+    },
+}
+
+/// All lights: spheres first, then triangles, then those without extent, each in authoring order.
 #[derive(Clone, Debug, Default)]
 pub struct Lights {
     /// Sphere index of each sphere light.
     pub spheres: Vec<u32>,
     /// Triangle lights.
     pub triangles: LightTriangles,
-    /// Running sums of the weights over `spheres` then `triangles`, f64; the last is the total.
+    /// Lights without extent.
+    pub punctual: Vec<Punctual>,
+    /// Running sums of the weights over `spheres`, `triangles` and `punctual`, f64; the last is the total.
     pub cumulative: Vec<f64>,
 }
 

@@ -36,6 +36,31 @@ pub enum ColorSource {
     },
 }
 
+/// How much of a surface is there: `factor` times the alpha of `texture`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coverage {
+    /// 0 to 1.
+    pub factor: f32,
+    /// Index into [`super::FlatScene::textures`].
+    pub texture: Option<u32>,
+}
+
+/// What rays meet of a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Opacity {
+    /// All of it.
+    Full,
+    /// What has at least the cutoff's coverage.
+    Mask {
+        /// Of the surface.
+        coverage: Coverage,
+        /// 0 to 1.
+        cutoff: f32,
+    },
+    /// As many of the rays as the coverage says; the others go straight on.
+    Blend(Coverage),
+}
+
 /// A material with its emission.
 #[derive(Clone, Copy, Debug)]
 pub struct Material {
@@ -47,8 +72,15 @@ pub struct Material {
     pub ior: f32,
     /// Hemispherical mean of the coat's internal reflectance, ∫ F(n → 1) 2 cos θ sin θ dθ; Plastic.
     pub internal_reflectance: f32,
-    /// Radiance emitted on the side that the geometric normal points to.
+    /// Whether [`super::Shading::colors`] multiply the colour; where nothing is scattered, the emission.
+    pub vertex_colors: bool,
+    /// Radiance emitted on the side that the geometric normal points to: what lights are weighed by. Where
+    /// `emission_source` says otherwise from place to place, the mean over its whole image, above 0 if any texel is.
     pub emission: [f32; 3],
+    /// The radiance itself, where it is not the same everywhere.
+    pub emission_source: Option<ColorSource>,
+    /// What rays meet.
+    pub opacity: Opacity,
 }
 
 /// Reflectance of dielectrics.

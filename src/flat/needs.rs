@@ -15,12 +15,20 @@ pub struct Needs {
     pub smooth_normals: bool,
     /// Texture coordinates.
     pub uvs: bool,
+    /// A second set of texture coordinates.
+    pub uvs1: bool,
+    /// Colours at the corners of triangles.
+    pub vertex_colors: bool,
     /// Textures.
     pub textures: bool,
+    /// Surfaces that rays may pass.
+    pub opacity: bool,
     /// A lens.
     pub lens: bool,
-    /// Something emits.
+    /// Something emits, or shines without extent.
     pub lights: bool,
+    /// Lights without extent.
+    pub punctual: bool,
     /// The background is not black.
     pub background: bool,
     /// [`super::Scatter::Diffuse`] occurs.

@@ -1,10 +1,11 @@
 //! Lights: choosing a point on one, and the density with which a given point would have been chosen.
 //!
 //! A light is chosen by its share of the table's weights; then a point of a triangle uniformly by area, of a sphere
-//! uniformly in the solid angle that it fills.
+//! uniformly in the solid angle that it fills. A light without extent has one direction, which nothing else finds.
 
+use super::attributes::light_radiance;
 use super::vector::{basis, unit};
-use crate::flat::{FlatScene, LightTriangles, Spheres};
+use crate::flat::{FlatScene, LightTriangles, Punctual, Spheres};
 use crate::math::{DVec3, Vec3, sin_cos_turns};
 use std::f64::consts::{PI, TAU};
 
@@ -23,8 +24,11 @@ pub(super) struct LightSample {
     pub(super) t_max: f32,
     /// What the light sends along it.
     pub(super) radiance: Vec3,
-    /// Density over solid angle, the choice of the light included.
+    /// Density over solid angle, the choice of the light included. Where the light has no extent, the probability of its
+    /// choice: `radiance` is irradiance then, of what faces it.
     pub(super) pdf: f32,
+    /// The light has no extent.
+    pub(super) punctual: bool,
 }
 
 /// Samples the light table from a point; `None` where the chosen light sends nothing there.
@@ -41,16 +45,24 @@ pub(super) fn sample_light(
         .cumulative
         .partition_point(|&sum| sum <= target)
         .min(lights.len().checked_sub(1)?);
-    match lights.spheres.get(chosen) {
-        Some(&sphere) => sample_sphere(scene, from, sphere as usize, u, total),
-        None => sample_triangle(
-            &lights.triangles,
-            from,
-            chosen - lights.spheres.len(),
-            u,
-            total,
-        ),
+    if let Some(&sphere) = lights.spheres.get(chosen) {
+        return sample_sphere(scene, from, sphere as usize, u, total);
     }
+    let (i, triangles) = (chosen - lights.spheres.len(), &lights.triangles);
+    if i >= triangles.area.len() {
+        let below = chosen.checked_sub(1).map_or(0.0, |k| lights.cumulative[k]);
+        let probability = (lights.cumulative[chosen] - below) / total;
+        return sample_punctual(
+            &lights.punctual[i - triangles.area.len()],
+            from,
+            probability,
+        );
+    }
+    let mut sample = sample_triangle(triangles, from, i, u, total)?;
+    if let Some(place) = triangles.place.get(i) {
+        sample.radiance = light_radiance(scene, place, triangle_weights(u));
+    }
+    (sample.radiance != Vec3::ZERO).then_some(sample)
 }
 
 /// Density, over solid angle from a point, of sampling the emitter that a ray in direction `dir` hit at distance `t`
@@ -182,7 +194,69 @@ fn sample_sphere(
         t_max: cone.distance(dir) * SHORT,
         radiance,
         pdf,
+        punctual: false,
     })
+}
+
+/// `None` where nothing of it arrives, or more than can be said.
+fn sample_punctual(light: &Punctual, from: Vec3, probability: f64) -> Option<LightSample> {
+    let (to, irradiance, t_max) = match light {
+        Punctual::Sun {
+            to_light,
+            irradiance,
+        } => (DVec3::from(*to_light), *irradiance, f32::MAX),
+        Punctual::Point {
+            position,
+            intensity,
+        } => towards(*position, from, *intensity, |_| 1.0),
+        Punctual::Spot {
+            position,
+            axis,
+            intensity,
+            cos_inner,
+            cos_outer,
+        } => towards(*position, from, *intensity, |to| {
+            let cos = -to.dot(DVec3::from(*axis));
+            if cos >= *cos_inner {
+                return 1.0;
+            }
+            let falloff = ((cos - cos_outer) / (cos_inner - cos_outer)).max(0.0);
+            falloff * falloff
+        }),
+    };
+    let radiance = DVec3::from(irradiance).as_vec3();
+    let pdf = probability as f32;
+    let arrives = radiance.max_element() > 0.0 && radiance.is_finite() && pdf > 0.0;
+    arrives.then_some(LightSample {
+        dir: to.as_vec3(),
+        t_max,
+        radiance,
+        pdf,
+        punctual: true,
+    })
+}
+
+/// Unit direction to a point, irradiance from there, and where the shadow ray ends; `share` is of the intensity, by the
+/// direction.
+fn towards(
+    position: [f64; 3],
+    from: Vec3,
+    intensity: [f64; 3],
+    share: impl Fn(DVec3) -> f64,
+) -> (DVec3, [f64; 3], f32) {
+    let to = DVec3::from(position) - from.as_dvec3();
+    let d2 = to.length_squared();
+    let dir = to / d2.sqrt();
+    let share = share(dir) / d2;
+    let t_max = (d2.sqrt() as f32).min(f32::MAX) * SHORT;
+    (dir, intensity.map(|c| c * share), t_max)
+}
+
+/// Weights of the second and third corner, uniform by area: the square folded along its diagonal by the square root
+/// (Turk 1990).
+fn triangle_weights(u: [f32; 2]) -> [f32; 2] {
+    let root = u[0].sqrt();
+    [root * (1.0 - u[1]), root * u[1]]
 }
 
 fn sample_triangle(
@@ -197,9 +271,7 @@ fn sample_triangle(
         Vec3::from(lights.e1[i]),
         Vec3::from(lights.e2[i]),
     );
-    // Uniform by area: the square folded along its diagonal by the square root (Turk 1990).
-    let root = u[0].sqrt();
-    let (b1, b2) = (root * (1.0 - u[1]), root * u[1]);
+    let [b1, b2] = triangle_weights(u);
     let ng = unit(e1.cross(e2));
     let point = v0 + e1 * b1 + e2 * b2;
     let size = v0.abs() + (e1 * b1).abs() + (e2 * b2).abs();
@@ -214,6 +286,7 @@ fn sample_triangle(
         t_max: distance * SHORT,
         radiance,
         pdf,
+        punctual: false,
     })
 }
 
@@ -289,6 +362,7 @@ mod tests {
             e2: vec![(c - a).to_array()],
             area: vec![(c - a).cross(b - a).length() / 2.0],
             radiance: vec![[2.0; 3]],
+            place: Vec::new(),
         };
         let total = f64::from(lights.area[0]) * 2.0;
         let [x, y, z] = [a, b, c].map(Vec3::as_dvec3);

@@ -2,15 +2,18 @@
 //! radiance samples. Infallible.
 //!
 //! A wave of paths goes through stages that are loops: generate → closest hit → surface → emission → sort by material →
-//! sample light → occluded → sample bsdf → roulette and compact → accumulate.
+//! sample light → occluded → sample bsdf → roulette and compact → accumulate. Scenes that need it have two more: opacity
+//! after closest hit (and in place of occluded), and vertex colours after surface.
 //!
 //! Deliberately absent: hecs, files, images, rayon, recursion, allocation per ray, locks.
 
+mod attributes;
 mod camera;
 pub mod fresnel;
 pub mod isa;
 pub mod kernels;
 mod light;
+mod opacity;
 pub mod options;
 mod path;
 pub mod rays;

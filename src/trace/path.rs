@@ -1,10 +1,12 @@
 //! The path loop: the stages of a bounce over a wave, from camera rays to sums.
 
+use super::attributes::{Place, emitted};
 use super::camera::{ImageSample, generate, image_direction};
 use super::light::light_pdf;
+use super::opacity::{pass_paths, pass_shadows, random};
 use super::sampler::{Pair, pixel_key, sample_pair};
 use super::scatter::{Bounce, mis_weight, sample_bsdf, sample_lights};
-use super::surface::surface;
+use super::surface::{color_by_vertices, surface};
 use super::vector::{get, set, unit};
 use super::wave::{WAVE, Wave};
 use super::{Hits, Rect, TileSums, TraceOptions, closest_hit, occluded};
@@ -128,7 +130,14 @@ fn trace_paths(wave: &mut Wave, scene: &FlatScene, options: &TraceOptions, sums:
         };
         closest_hit(scene, options.isa, &wave.paths.rays, &mut wave.hits);
         sums.rays[0] += wave.paths.len() as u64;
+        if scene.needs.opacity {
+            let number = random(options.sampler, index);
+            sums.rays[0] += pass_paths(wave, scene, options.isa, number);
+        }
         surface(wave, scene);
+        if scene.needs.vertex_colors {
+            color_by_vertices(wave, scene);
+        }
         if index == 0 && options.features {
             record_features(wave, scene);
         }
@@ -139,13 +148,7 @@ fn trace_paths(wave: &mut Wave, scene: &FlatScene, options: &TraceOptions, sums:
         sort_by_scatter(wave, scene);
         if options.nee && scene.needs.lights && (scene.needs.diffuse || scene.needs.plastic) {
             sample_lights(wave, bounce);
-            occluded(
-                scene,
-                options.isa,
-                &wave.shadows.rays,
-                &mut wave.shadows.blocked,
-            );
-            sums.rays[1] += wave.shadows.rays.len() as u64;
+            sums.rays[1] += find_blocked(wave, scene, options);
             add_lights(wave);
         }
         for kind in kinds(&scene.needs) {
@@ -156,6 +159,16 @@ fn trace_paths(wave: &mut Wave, scene: &FlatScene, options: &TraceOptions, sums:
         }
         wave.paths.compact(&wave.alive);
     }
+}
+
+/// Finds which shadow rays something blocks; returns how many rays that took.
+fn find_blocked(wave: &mut Wave, scene: &FlatScene, options: &TraceOptions) -> u64 {
+    if scene.needs.opacity {
+        return pass_shadows(wave, scene, options.isa);
+    }
+    let shadows = &mut wave.shadows;
+    occluded(scene, options.isa, &shadows.rays, &mut shadows.blocked);
+    shadows.rays.len() as u64
 }
 
 /// The kinds of scattering that the scene has.
@@ -184,23 +197,20 @@ fn emission(wave: &mut Wave, bounce: Bounce) {
             }
             continue;
         }
-        let emitted = Vec3::from(scene.materials[wave.surfaces.material[i] as usize].emission);
+        let material = &scene.materials[wave.surfaces.material[i] as usize];
+        let mean = Vec3::from(material.emission);
         let dir = get(&wave.paths.rays.dir, i);
         let ng = get(&wave.surfaces.ng, i);
-        if emitted.max_element() <= 0.0 || dir.dot(ng) >= 0.0 {
+        if mean.max_element() <= 0.0 || dir.dot(ng) >= 0.0 {
             continue;
         }
+        let uv = [wave.surfaces.uv[0][i], wave.surfaces.uv[1][i]];
+        let emitted = emitted(scene, material, &Place::of_hit(&wave.hits, i, uv));
         let mut weight = 1.0;
         let pdf = wave.paths.pdf[i];
         if options.nee && pdf > 0.0 {
-            let from = get(&wave.paths.rays.origin, i);
-            let light = light_pdf(
-                scene,
-                from,
-                (dir, wave.hits.t[i]),
-                (wave.hits.prim[i], ng),
-                emitted,
-            );
+            let (from, t) = wave.leg(i);
+            let light = light_pdf(scene, from, (dir, t), (wave.hits.prim[i], ng), mean);
             weight = match options.mis {
                 true => mis_weight(pdf, light),
                 false => f32::from(u8::from(light == 0.0)),
@@ -276,7 +286,8 @@ fn record_features(wave: &mut Wave, scene: &FlatScene) {
         set(albedos, slot, albedo);
         set(normals, slot, get(&wave.surfaces.ns, i));
         set(geonormals, slot, get(&wave.surfaces.ng, i));
-        wave.slots.depth[slot] = wave.hits.t[i] * get(&wave.paths.rays.dir, i).dot(forward);
+        let (_, t) = wave.leg(i);
+        wave.slots.depth[slot] = t * get(&wave.paths.rays.dir, i).dot(forward);
     }
 }
 
@@ -330,6 +341,10 @@ fn trace_ids(
         wave.paths.push(Vec3::from(scene.camera.origin), dir, pixel);
     }
     closest_hit(scene, options.isa, &wave.paths.rays, &mut wave.hits);
+    if scene.needs.opacity {
+        // Half of it is enough to be there.
+        pass_paths(wave, scene, options.isa, |_, _, _| 0.5);
+    }
     surface(wave, scene);
     for i in 0..sums.uv.len() {
         let (prim, instance) = (wave.hits.prim[i], wave.hits.instance[i]);

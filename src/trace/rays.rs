@@ -60,6 +60,14 @@ impl Rays {
         self.t_max.clear();
     }
 
+    /// Keeps the first n rays.
+    pub(super) fn truncate(&mut self, n: usize) {
+        for array in self.origin.iter_mut().chain(&mut self.dir) {
+            array.truncate(n);
+        }
+        self.t_max.truncate(n);
+    }
+
     /// Appends a ray.
     pub fn push(&mut self, origin: [f32; 3], dir: [f32; 3], t_max: f32) {
         for axis in 0..3 {

@@ -3,7 +3,7 @@
 //! Dimensions come in pairs, by a fixed table ([`Pair`]), each padded on its own: the sample index is shuffled per
 //! pair, the two coordinates are Owen-scrambled (Burley 2020, "Practical hash-based Owen scrambling", JCGT 9(4)).
 
-use super::Sampler;
+use super::{Sampler, opacity::MAX_PASSES};
 
 /// What a pair of dimensions is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,11 +20,16 @@ pub(super) enum Pair {
     Direction(u32),
     /// Roulette; the second is not used.
     Roulette(u32),
+    /// Whether a surface is there, at a bounce after so many that were not; the second is not used.
+    Opacity(u32, u32),
 }
 
 /// Pairs of a camera ray, and pairs of every bounce.
 const CAMERA_PAIRS: u32 = 2;
 const BOUNCE_PAIRS: u32 = 4;
+
+/// First row of [`Pair::Opacity`]: the table above has fewer, unless paths have 2²⁹ bounces.
+const OPACITY_ROWS: u32 = 1 << 31;
 
 impl Pair {
     /// Its row in the table of dimensions.
@@ -36,6 +41,9 @@ impl Pair {
             Pair::Light(b) => CAMERA_PAIRS + b * BOUNCE_PAIRS + 1,
             Pair::Direction(b) => CAMERA_PAIRS + b * BOUNCE_PAIRS + 2,
             Pair::Roulette(b) => CAMERA_PAIRS + b * BOUNCE_PAIRS + 3,
+            Pair::Opacity(b, pass) => {
+                OPACITY_ROWS.wrapping_add(b.wrapping_mul(MAX_PASSES).wrapping_add(pass))
+            }
         }
     }
 }

@@ -172,7 +172,7 @@ pub(super) fn sample_lights(wave: &mut Wave, bounce: Bounce) {
                 let plastic = Plastic::new(bounce.options.fresnel, material, &local);
                 (plastic.eval_base(cos), 1.0 - plastic.coat_share)
             };
-            let weight = if bounce.options.mis {
+            let weight = if bounce.options.mis && !light.punctual {
                 mis_weight(light.pdf, share * cos * FRAC_1_PI)
             } else {
                 1.0

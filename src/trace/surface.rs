@@ -1,17 +1,18 @@
 //! Surface: where a path is, from its hit and the cold arrays. Attributes are read once, for the closest hit only.
 
+use super::attributes::{Place, texture_color, vertex_color};
 use super::vector::{get, set, unit};
-use super::wave::{Paths, Wave};
-use super::{Hits, spawn, texture::eval_texture};
+use super::wave::Wave;
+use super::{Hits, Rays, spawn};
 use crate::flat::{ColorSource, FlatScene, Geometry, Instance, Scatter, Spheres};
 use crate::math::{Vec3, acos, atan2};
 
 /// A point of a surface.
-struct Point {
-    position: Vec3,
-    ng: Vec3,
+pub(super) struct Point {
+    pub(super) position: Vec3,
+    pub(super) ng: Vec3,
     ns: Vec3,
-    uv: [f32; 2],
+    pub(super) uv: [f32; 2],
     material: u32,
 }
 
@@ -28,23 +29,37 @@ pub(super) fn surface(wave: &mut Wave, scene: &FlatScene) {
         if hits.prim[i] == Hits::NONE {
             continue;
         }
-        let point = point(scene, paths, hits, i);
+        let point = point(scene, &paths.rays, hits, i);
         set(&mut surfaces.position, i, point.position);
         set(&mut surfaces.ng, i, point.ng);
         set(&mut surfaces.ns, i, point.ns);
         surfaces.uv[0][i] = point.uv[0];
         surfaces.uv[1][i] = point.uv[1];
         surfaces.material[i] = point.material;
-        set(&mut surfaces.color, i, color(scene, &point));
+        set(&mut surfaces.color, i, color(scene, &point, hits, i));
     }
 }
 
-fn point(scene: &FlatScene, paths: &Paths, hits: &Hits, i: usize) -> Point {
+/// Multiplies the colours of `wave.surfaces` by those of the corners, where materials want it.
+pub(super) fn color_by_vertices(wave: &mut Wave, scene: &FlatScene) {
+    let Wave { hits, surfaces, .. } = wave;
+    for i in 0..surfaces.material.len() {
+        let hit = hits.prim[i] != Hits::NONE;
+        if hit && scene.materials[surfaces.material[i] as usize].vertex_colors {
+            let place = Place::of_hit(hits, i, [0.0; 2]);
+            let color = get(&surfaces.color, i) * vertex_color(scene, &place);
+            set(&mut surfaces.color, i, color);
+        }
+    }
+}
+
+/// Where a ray hits what it hits.
+pub(super) fn point(scene: &FlatScene, rays: &Rays, hits: &Hits, i: usize) -> Point {
     let (prim, instance) = (hits.prim[i], hits.instance[i]);
     if prim & Spheres::TAG != 0 {
         let ray = [
-            get(&paths.rays.origin, i).to_array(),
-            get(&paths.rays.dir, i).to_array(),
+            get(&rays.origin, i).to_array(),
+            get(&rays.dir, i).to_array(),
         ];
         return on_sphere(scene, ray, hits.t[i], (prim & !Spheres::TAG) as usize);
     }
@@ -140,7 +155,7 @@ fn sphere_uv(spheres: &Spheres, s: usize, n: Vec3) -> [f32; 2] {
     ]
 }
 
-fn color(scene: &FlatScene, point: &Point) -> Vec3 {
+fn color(scene: &FlatScene, point: &Point, hits: &Hits, i: usize) -> Vec3 {
     let material = &scene.materials[point.material as usize];
     if material.scatter == Scatter::Nothing {
         return Vec3::ZERO;
@@ -148,7 +163,8 @@ fn color(scene: &FlatScene, point: &Point) -> Vec3 {
     match material.color {
         ColorSource::Constant(c) => Vec3::from(c),
         ColorSource::Texture { texture, factor } => {
-            Vec3::from(factor) * eval_texture(&scene.textures[texture as usize], point.uv)
+            let place = Place::of_hit(hits, i, point.uv);
+            Vec3::from(factor) * texture_color(scene, texture, &place)
         }
     }
 }
