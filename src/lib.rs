@@ -77,6 +77,9 @@
 //!   a glTF file, `Mesh(path: "room.glb", mesh: 3)`: what `convert` writes and `turntable` needs.
 //! * A glTF mesh without normals is flat, as its specification demands; an OBJ mesh stays smooth to 60°.
 //! * The typed document of the `gltf` crate gives structure, the JSON beside it the numbers: the crate rounds them to f32.
+//! * Opacity is a stage of its own behind the kernels, which know nothing of it: a ray that passes a surface leaves it by
+//!   the hit's error bound and is traced again. Where a path last scattered is kept beside, so that densities stay those of
+//!   the scattering.
 //! * `world::AuthoringIndex` is a pair, entity and node, since one entity of a scene may stand for a file's many.
 
 pub mod asset;

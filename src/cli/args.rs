@@ -102,7 +102,7 @@ pub(crate) struct RenderArgs {
     /// More images in the EXR file, separated by commas
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = aov_parser())]
     pub(crate) aov: Vec<Aov>,
-    /// Sample lights directly (next-event estimation)
+    /// Sample lights directly (next-event estimation); off, `light: Point, Spot, Sun` are not found and do not shine
     #[arg(long, value_enum, default_value_t = Switch::On)]
     pub(crate) nee: Switch,
     /// Weigh light and material samples against each other (multiple importance sampling)

@@ -4,7 +4,7 @@ use super::args::InspectArgs;
 use super::failure::Failure;
 use super::{load, print_result};
 use crate::build::{BufferBytes, BuildTimes, buffer_bytes};
-use crate::flat::{ColorSource, FlatScene, Material, MaterialId, ObjectId, Scatter};
+use crate::flat::{ColorSource, FlatScene, Material, MaterialId, ObjectId, Opacity, Scatter};
 use crate::render::Settings;
 use crate::scene::{FilterDesc, NormalsDesc, SceneDesc, ShapeDesc};
 use serde_json::{Value, json};
@@ -59,8 +59,26 @@ impl Subject<'_> {
                 && entity.normals != Some(NormalsDesc::Flat)
         });
         let scatter = |wanted: Scatter| self.material(|m| m.scatter == wanted);
-        let texture = self.material(|m| matches!(m.color, ColorSource::Texture { .. }));
+        let reads = |m: &Material, wanted: &dyn Fn(u32) -> bool| {
+            let of = |source: ColorSource| match source {
+                ColorSource::Texture { texture, .. } => wanted(texture),
+                ColorSource::Constant(_) => false,
+            };
+            let coverage = match m.opacity {
+                Opacity::Full => None,
+                Opacity::Mask { coverage, .. } | Opacity::Blend(coverage) => coverage.texture,
+            };
+            of(m.color) || m.emission_source.is_some_and(of) || coverage.is_some_and(wanted)
+        };
+        let texture = self.material(|m| reads(m, &|_| true));
+        let second = |texture: u32| self.scene.textures[texture as usize].uv_set == 1;
+        let second = self.material(|m| reads(m, &second));
+        let punctual = self.entity(|i| {
+            let entity = &desc.entities[i].value;
+            entity.light.is_some() || entity.gltf.is_some()
+        });
         let light = self.material(|m| m.emission != [0.0; 3]);
+        let light = light.or_else(|| punctual.clone());
         let triangles = shape(|s| matches!(s, ShapeDesc::Mesh { .. }));
         let place = |what: &str| Some(what.to_owned());
         vec![
@@ -70,9 +88,21 @@ impl Subject<'_> {
             ("instances", needs.instances, instance),
             ("smooth normals", needs.smooth_normals, smooth),
             ("texture coordinates", needs.uvs, texture.clone()),
+            ("second texture coordinates", needs.uvs1, second),
+            (
+                "vertex colours",
+                needs.vertex_colors,
+                self.material(|m| m.vertex_colors),
+            ),
             ("textures", needs.textures, texture),
+            (
+                "opacity",
+                needs.opacity,
+                self.material(|m| m.opacity != Opacity::Full),
+            ),
             ("lens", needs.lens, place("camera")),
             ("light sampling", needs.lights, light),
+            ("lights without extent", needs.punctual, punctual),
             ("background", needs.background, place("background")),
             ("diffuse", needs.diffuse, scatter(Scatter::Diffuse)),
             ("mirror", needs.mirror, scatter(Scatter::Mirror)),
@@ -230,7 +260,7 @@ impl Subject<'_> {
 
 fn line(text: &mut String, name: &str, value: &str) {
     // Writing to a string does not fail.
-    let _ = writeln!(text, "  {name:<26}{value}");
+    let _ = writeln!(text, "  {name:<28}{value}");
 }
 
 /// `812 B`, `3.4 kB`, `12.0 MB`.

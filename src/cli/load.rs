@@ -6,7 +6,7 @@ use crate::check::check;
 use crate::diag::Diagnostic;
 use crate::render::{Renderer, Settings};
 use crate::scene::{self, LoadError, SceneDesc};
-use crate::world;
+use crate::world::{self, Light};
 use hecs::World;
 use std::path::Path;
 
@@ -52,6 +52,11 @@ fn refuse(path: &Path, error: LoadError) -> Failure {
 }
 
 impl Loaded {
+    /// Whether there are lights without extent, which no ray can hit.
+    pub(crate) fn has_punctual_lights(&self) -> bool {
+        self.world.query::<&Light>().iter().next().is_some()
+    }
+
     /// Starts the renderer's threads.
     pub(crate) fn renderer(self, settings: Settings) -> Result<Renderer, Failure> {
         Renderer::new(&self.desc, self.world, &self.assets, settings)

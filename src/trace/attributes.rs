@@ -58,6 +58,7 @@ impl Place {
         }
     }
 
+    #[inline(always)]
     fn coordinates(&self, scene: &FlatScene, texture: &Texture) -> [f32; 2] {
         let [u, v] = match texture.uv_set {
             0 => self.uv,
@@ -96,6 +97,7 @@ pub(super) fn material(scene: &FlatScene, prim: u32, instance: u32) -> &Material
 }
 
 /// A texture's colour at a place.
+#[inline(always)]
 pub(super) fn texture_color(scene: &FlatScene, texture: u32, place: &Place) -> Vec3 {
     let texture = &scene.textures[texture as usize];
     eval_texture(texture, place.coordinates(scene, texture))
@@ -107,11 +109,24 @@ pub(super) fn vertex_color(scene: &FlatScene, place: &Place) -> Vec3 {
 }
 
 /// Radiance at a place of a material that emits.
+#[inline(always)]
 pub(super) fn emitted(scene: &FlatScene, material: &Material, place: &Place) -> Vec3 {
-    let radiance = match material.emission_source {
-        None => return Vec3::from(material.emission),
-        Some(ColorSource::Constant(c)) => Vec3::from(c),
-        Some(ColorSource::Texture { texture, factor }) => {
+    match &material.emission_source {
+        None => Vec3::from(material.emission),
+        Some(source) => emitted_from(scene, material, source, place),
+    }
+}
+
+#[inline(never)]
+fn emitted_from(
+    scene: &FlatScene,
+    material: &Material,
+    source: &ColorSource,
+    place: &Place,
+) -> Vec3 {
+    let radiance = match *source {
+        ColorSource::Constant(c) => Vec3::from(c),
+        ColorSource::Texture { texture, factor } => {
             Vec3::from(factor) * texture_color(scene, texture, place)
         }
     };
@@ -139,16 +154,18 @@ fn presence(scene: &FlatScene, material: &Material, place: &Place) -> f32 {
 }
 
 /// As [`presence`], of hit i.
+#[inline(never)]
 pub(super) fn hit_presence(scene: &FlatScene, rays: &Rays, hits: &Hits, i: usize) -> f32 {
     let material = material(scene, hits.prim[i], hits.instance[i]);
     if material.opacity == Opacity::Full {
         return 1.0;
     }
-    let uv = surface::point(scene, rays, hits, i).uv;
+    let uv = surface::place(scene, rays, hits, i).uv;
     presence(scene, material, &Place::of_hit(hits, i, uv))
 }
 
 /// What the point of a light triangle sends out, as much of it as is there.
+#[inline(never)]
 pub(super) fn light_radiance(scene: &FlatScene, light: &LightPlace, weights: [f32; 2]) -> Vec3 {
     let place = Place::on_light(scene, light, weights);
     let material = material(scene, place.prim, place.instance);

@@ -5,7 +5,7 @@
 
 use super::attributes::light_radiance;
 use super::vector::{basis, unit};
-use crate::flat::{FlatScene, LightTriangles, Punctual, Spheres};
+use crate::flat::{FlatScene, LightTriangles, Lights, Punctual, Spheres};
 use crate::math::{DVec3, Vec3, sin_cos_turns};
 use std::f64::consts::{PI, TAU};
 
@@ -32,6 +32,7 @@ pub(super) struct LightSample {
 }
 
 /// Samples the light table from a point; `None` where the chosen light sends nothing there.
+#[inline(always)]
 pub(super) fn sample_light(
     scene: &FlatScene,
     from: Vec3,
@@ -50,13 +51,7 @@ pub(super) fn sample_light(
     }
     let (i, triangles) = (chosen - lights.spheres.len(), &lights.triangles);
     if i >= triangles.area.len() {
-        let below = chosen.checked_sub(1).map_or(0.0, |k| lights.cumulative[k]);
-        let probability = (lights.cumulative[chosen] - below) / total;
-        return sample_punctual(
-            &lights.punctual[i - triangles.area.len()],
-            from,
-            probability,
-        );
+        return sample_punctual(lights, from, chosen);
     }
     let mut sample = sample_triangle(triangles, from, i, u, total)?;
     if let Some(place) = triangles.place.get(i) {
@@ -199,8 +194,12 @@ fn sample_sphere(
 }
 
 /// `None` where nothing of it arrives, or more than can be said.
-fn sample_punctual(light: &Punctual, from: Vec3, probability: f64) -> Option<LightSample> {
-    let (to, irradiance, t_max) = match light {
+#[inline(never)]
+fn sample_punctual(lights: &Lights, from: Vec3, chosen: usize) -> Option<LightSample> {
+    let below = chosen.checked_sub(1).map_or(0.0, |k| lights.cumulative[k]);
+    let probability = (lights.cumulative[chosen] - below) / lights.total();
+    let others = lights.len() - lights.punctual.len();
+    let (to, irradiance, t_max) = match &lights.punctual[chosen - others] {
         Punctual::Sun {
             to_light,
             irradiance,

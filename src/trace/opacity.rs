@@ -7,7 +7,7 @@
 use super::attributes::hit_presence;
 use super::sampler::{Pair, sample_pair};
 use super::spawn::offset_origin;
-use super::surface::point;
+use super::surface::place;
 use super::vector::{get, set};
 use super::wave::{Slots, Wave};
 use super::{Hits, Isa, Rays, Sampler, closest_hit};
@@ -51,6 +51,7 @@ pub(super) fn random(sampler: Sampler, bounce: u32) -> impl Fn(&Slots, usize, u3
 
 /// Lets every path go on to the first surface that is there: where `number` (of slot and pass) is at most the share of
 /// rays that meet it. Returns how many rays that took.
+#[inline(never)]
 pub(super) fn pass_paths(
     wave: &mut Wave,
     scene: &FlatScene,
@@ -103,6 +104,7 @@ pub(super) fn pass_paths(
 
 /// Finds which shadow rays something blocks, and takes from the others what blends on their way keep. Returns how many
 /// rays that took.
+#[inline(never)]
 pub(super) fn pass_shadows(wave: &mut Wave, scene: &FlatScene, isa: Isa) -> u64 {
     let Wave {
         shadows, through, ..
@@ -155,7 +157,7 @@ pub(super) fn pass_shadows(wave: &mut Wave, scene: &FlatScene, isa: Isa) -> u64 
 
 /// Where the ray of hit i goes on, on the other side of what it hit.
 fn beyond(scene: &FlatScene, rays: &Rays, hits: &Hits, i: usize) -> Vec3 {
-    let point = point(scene, rays, hits, i);
+    let point = place(scene, rays, hits, i);
     let dir = get(&rays.dir, i).to_array();
     let origin = offset_origin(
         point.position.to_array(),

@@ -58,8 +58,9 @@ pub(super) fn pixel_key(seed: u64, frame: u32, x: u32, y: u32) -> u32 {
     key
 }
 
-/// Two numbers strictly between 0 and 1: (k + ½) 2⁻²³, so that no map from the square meets its own border.
-#[inline]
+/// Two numbers strictly between 0 and 1: (k + ½) 2⁻²³, so that no map from the square meets its own border. Inlined by
+/// force, since the pair is a constant where it is called: out of line, a room took 7 % more instructions.
+#[inline(always)]
 #[must_use]
 pub(super) fn sample_pair(sampler: Sampler, key: u32, sample: u32, pair: Pair) -> [f32; 2] {
     let key = mix(key ^ pair.row().wrapping_mul(0x9e37_79b9));

@@ -5,6 +5,7 @@ use crate::math::{SRGB_BYTES, Vec3};
 
 /// Linear colour at texture coordinates (u, v), v up: texel (0, 0) is the top left, its centre at
 /// u = 0.5 / width, v = 1 − 0.5 / height.
+#[inline]
 #[must_use]
 pub fn eval_texture(texture: &Texture, uv: [f32; 2]) -> Vec3 {
     filtered(texture, uv, |i| {

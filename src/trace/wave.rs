@@ -118,6 +118,7 @@ impl Paths {
     }
 
     /// Keeps the paths that `alive` says, in order.
+    #[inline]
     pub(super) fn compact(&mut self, alive: &[bool]) {
         let floats = self
             .rays

@@ -2,6 +2,7 @@
 
 use crate::reference::{self, Estimator};
 use crate::stats::Picture;
+use luxel::asset::AssetStore;
 use luxel::build::Accel;
 use luxel::flat::FlatScene;
 use luxel::render::{Renderer, Settings};
@@ -13,6 +14,10 @@ use std::path::PathBuf;
 pub(crate) struct Stage {
     folder: PathBuf,
     text: String,
+    /// Changes what the files gave.
+    files: Box<dyn Fn(&mut AssetStore)>,
+    /// Changes the reference's scene likewise.
+    truth: Box<dyn Fn(&mut reference::Scene)>,
 }
 
 /// Seeds of one picture: their spread is its error.
@@ -35,6 +40,8 @@ impl Stage {
         Stage {
             folder,
             text: String::new(),
+            files: Box::new(|_| ()),
+            truth: Box::new(|_| ()),
         }
     }
 
@@ -47,6 +54,17 @@ impl Stage {
     /// Writes a file that the scene names.
     pub(crate) fn file(self, name: &str, text: &str) -> Stage {
         std::fs::write(self.folder.join(name), text).expect("a scratch file");
+        self
+    }
+
+    /// Gives meshes what few files bring: to what luxel loaded, and to the reference, which reads no such files.
+    pub(crate) fn retouch(
+        mut self,
+        files: impl Fn(&mut AssetStore) + 'static,
+        truth: impl Fn(&mut reference::Scene) + 'static,
+    ) -> Stage {
+        self.files = Box::new(files);
+        self.truth = Box::new(truth);
         self
     }
 
@@ -73,7 +91,28 @@ impl Stage {
 
     /// As luxel traces it.
     pub(crate) fn flat(&self, frame: u32, options: &TraceOptions) -> FlatScene {
-        flatten(&self.describe(), frame, options)
+        self.flat_by(frame, options, Accel::Bvh)
+    }
+
+    /// As luxel traces it, with as much of a tree.
+    pub(crate) fn flat_by(&self, frame: u32, options: &TraceOptions, accel: Accel) -> FlatScene {
+        let desc = self.describe();
+        let mut spawned = match luxel::world::spawn(&desc, luxel::asset::Loader::new()) {
+            Ok(spawned) => spawned,
+            Err(errors) => panic!("{errors:#?}"),
+        };
+        (self.files)(&mut spawned.assets);
+        let settings = Settings {
+            size: desc.render.size,
+            spp: desc.render.spp,
+            time: None,
+            threads: Some(1),
+            tile: Settings::DEFAULT_TILE,
+            accel,
+            trace: *options,
+        };
+        let renderer = Renderer::new(&desc, spawned.world, &spawned.assets, settings);
+        renderer.expect("a thread").build(frame).0
     }
 
     /// What luxel makes of all pixels.
@@ -103,33 +142,15 @@ impl Stage {
 
     /// The scene as the reference sees it.
     pub(crate) fn reference_scene(&self, frame: u32) -> reference::Scene {
-        reference::adapt::scene(&self.describe(), frame)
+        let mut scene = reference::adapt::scene(&self.describe(), frame);
+        (self.truth)(&mut scene);
+        scene
     }
 
     /// What the reference makes of it.
     pub(crate) fn reference(&self, frame: u32, spp: u32, estimator: Estimator) -> Picture {
         reference::render(&self.reference_scene(frame), estimator, spp, 7)
     }
-}
-
-/// Spawns, poses and builds a frame.
-fn flatten(desc: &SceneDesc, frame: u32, options: &TraceOptions) -> FlatScene {
-    let spawned = match luxel::world::spawn(desc, luxel::asset::Loader::new()) {
-        Ok(spawned) => spawned,
-        Err(errors) => panic!("{errors:#?}"),
-    };
-    let settings = Settings {
-        size: desc.render.size,
-        spp: desc.render.spp,
-        time: None,
-        threads: Some(1),
-        tile: Settings::DEFAULT_TILE,
-        accel: Accel::Bvh,
-        trace: *options,
-    };
-    let mut renderer =
-        Renderer::new(desc, spawned.world, &spawned.assets, settings).expect("a thread");
-    renderer.build(frame).0
 }
 
 /// The whole picture as one tile.

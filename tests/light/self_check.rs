@@ -38,8 +38,11 @@ fn surface(shape: Shape, kind: Kind, color: f64, emission: f64) -> Surface {
         material: Rc::new(Material {
             kind,
             color: Color::Flat(DVec3::splat(color)),
+            tinted: false,
+            veil: None,
         }),
-        emission: DVec3::splat(emission),
+        emission: Color::Flat(DVec3::splat(emission)),
+        tinted_emission: false,
         entity: 0,
     }
 }
@@ -63,6 +66,7 @@ fn receiver(at: DVec3) -> Shape {
         ],
         n: None,
         uv: [DVec2::ZERO; 3],
+        more: None,
     }
 }
 
@@ -80,6 +84,7 @@ fn a_sphere_lights_a_plane_by_chance_and_by_area() {
                 surface(receiver(DVec3::ZERO), Kind::Diffuse, 0.5, 0.0),
                 surface(ball(lamp, 4.0 * s, false), Kind::Nothing, 0.0, 1.0),
             ],
+            bulbs: Vec::new(),
             background: DVec3::ZERO,
             camera: spot(DVec3::new(-0.4, 0.3, 0.1), DVec3::ZERO),
         };
@@ -101,6 +106,7 @@ fn a_room_multiplies_light() {
             surface(ball(DVec3::ZERO, 2.0, true), Kind::Diffuse, 0.8, 0.0),
             surface(ball(DVec3::ZERO, 1.0, false), Kind::Diffuse, inner, 1.0),
         ],
+        bulbs: Vec::new(),
         background: DVec3::ZERO,
         camera: spot(DVec3::new(0.0, 0.0, 1.5), DVec3::new(0.0, 0.0, 9.0)),
     };
@@ -132,6 +138,7 @@ fn white_things_vanish_in_a_white_sky() {
     for kind in kinds {
         let scene = Scene {
             surfaces: vec![surface(ball(DVec3::ZERO, 1.0, false), kind, 1.0, 0.0)],
+            bulbs: Vec::new(),
             background: DVec3::ONE,
             camera: Camera {
                 slope: 0.3,

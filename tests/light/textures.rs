@@ -298,12 +298,12 @@ fn colors_are_those_of_the_texture() {
                 ));
             let sums = stage.sums(0, 1, &options(1));
             let image = Image {
-                wrap,
+                wrap: [wrap; 2],
                 bilinear,
                 ..Image::from_srgb(&coat(), WIDTH as usize, HEIGHT as usize)
             };
             for (i, uv) in wanted.iter().enumerate() {
-                let truth = image.at(*uv).to_array();
+                let truth = image.look_up(*uv).to_array();
                 for c in 0..3 {
                     assert!(
                         (sums.rgb[i][c] - truth[c]).abs() < 2e-5,

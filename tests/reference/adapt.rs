@@ -3,13 +3,13 @@
 //! Understands what the tests use: a camera at top level or on an entity, meshes with file normals or `Flat`, materials on the entity.
 
 use super::{
-    Camera, Color, Filter, Image, Kind, Material, Scene, Shape, Surface, Wrap,
+    Bulb, Camera, Color, Filter, Image, Kind, Material, Scene, Shape, Surface, Wrap,
     internal_reflectance, obj,
 };
 use glam::{DMat3, DVec3};
 use luxel::scene::{
-    CameraDesc, ColorDesc, EntityDesc, FilterDesc, MaterialDesc, NormalsDesc, RotateDesc,
-    SceneDesc, ShapeDesc, TextureFilterDesc, WrapDesc,
+    CameraDesc, ColorDesc, EntityDesc, FilterDesc, LightDesc, MaterialDesc, NormalsDesc,
+    RotateDesc, SceneDesc, ShapeDesc, TextureFilterDesc, WrapDesc,
 };
 use std::path::Path;
 use std::rc::Rc;
@@ -46,16 +46,21 @@ pub(crate) fn scene(desc: &SceneDesc, frame: u32) -> Scene {
     let plain = Rc::new(Material {
         kind: Kind::Diffuse,
         color: Color::Flat(DVec3::splat(0.8)),
+        tinted: false,
+        veil: None,
     });
     let nothing = Rc::new(Material {
         kind: Kind::Nothing,
         color: Color::Flat(DVec3::ZERO),
+        tinted: false,
+        veil: None,
     });
-    let mut surfaces = Vec::new();
+    let (mut surfaces, mut bulbs) = (Vec::new(), Vec::new());
     for (i, entity) in desc.entities.iter().enumerate() {
         let entity = &entity.value;
-        let Some(shape) = &entity.shape else { continue };
         let map = map_of(desc, i, time);
+        bulbs.extend(entity.light.map(|light| bulb(light, &map)));
+        let Some(shape) = &entity.shape else { continue };
         let material = match (entity.material, entity.emissive) {
             (Some(m), _) => &materials[m],
             (None, Some(_)) => &nothing,
@@ -65,15 +70,42 @@ pub(crate) fn scene(desc: &SceneDesc, frame: u32) -> Scene {
             surfaces.push(Surface {
                 shape,
                 material: Rc::clone(material),
-                emission: DVec3::from(entity.emissive.unwrap_or_default()),
+                emission: Color::Flat(DVec3::from(entity.emissive.unwrap_or_default())),
+                tinted_emission: false,
                 entity: i,
             });
         }
     }
     Scene {
         surfaces,
+        bulbs,
         background: constant(&desc.background),
         camera: camera(desc, time),
+    }
+}
+
+fn bulb(light: LightDesc, map: &Map) -> Bulb {
+    let axis = (map.linear * DVec3::NEG_Z).normalize();
+    match light {
+        LightDesc::Point { intensity } => Bulb::Point {
+            at: map.offset,
+            intensity: DVec3::from(intensity),
+        },
+        LightDesc::Spot {
+            intensity,
+            inner_deg,
+            outer_deg,
+        } => Bulb::Spot {
+            at: map.offset,
+            axis,
+            intensity: DVec3::from(intensity),
+            inner: inner_deg,
+            outer: outer_deg,
+        },
+        LightDesc::Sun { irradiance } => Bulb::Sun {
+            towards: -axis,
+            irradiance: DVec3::from(irradiance),
+        },
     }
 }
 
@@ -91,11 +123,11 @@ fn color(color: &ColorDesc, folder: &Path) -> Color {
     let file = image::open(folder.join(&path.value)).expect("the texture of a test");
     let rgb = file.to_rgb8();
     let mut image = Image::from_srgb(rgb.as_raw(), rgb.width() as usize, rgb.height() as usize);
-    image.wrap = match wrap {
+    image.wrap = [match wrap {
         WrapDesc::Repeat => Wrap::Repeat,
         WrapDesc::Mirror => Wrap::Mirror,
         WrapDesc::Clamp => Wrap::Clamp,
-    };
+    }; 2];
     image.bilinear = *filter == TextureFilterDesc::Bilinear;
     Color::Image(image)
 }
@@ -114,6 +146,8 @@ fn material(desc: &MaterialDesc, folder: &Path) -> Material {
     Material {
         kind,
         color: color(c, folder),
+        tinted: false,
+        veil: None,
     }
 }
 
@@ -192,6 +226,7 @@ fn triangle(face: obj::Face, normals: Option<NormalsDesc>, map: &Map) -> Shape {
         p: wind(face.p.map(|p| map.at(p))),
         n: n.map(|n| wind(n.map(|n| (cotransform * n).normalize()))),
         uv: if mirrored { [a, c, b] } else { [a, b, c] },
+        more: None,
     }
 }
 

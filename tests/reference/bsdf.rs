@@ -44,6 +44,10 @@ fn mirror(wo: DVec3, ng: DVec3, ns: DVec3) -> DVec3 {
 }
 
 impl Material {
+    fn color_at(&self, hit: &Hit) -> DVec3 {
+        self.color.at(hit) * if self.tinted { hit.tint } else { DVec3::ONE }
+    }
+
     /// The part that light samples can reach: f towards `wi`. `ng` and `ns` are on the side of `wo`.
     pub(crate) fn smooth(&self, hit: &Hit, wo: DVec3, wi: DVec3) -> DVec3 {
         let (ng, ns) = facing(hit, wo);
@@ -51,7 +55,7 @@ impl Material {
         if wi.dot(ng) <= 0.0 || cos <= 0.0 {
             return DVec3::ZERO;
         }
-        let color = self.color.at(hit.uv);
+        let color = self.color_at(hit);
         match self.kind {
             Kind::Diffuse => color / PI,
             Kind::Plastic { ior, inner } => {
@@ -65,7 +69,7 @@ impl Material {
     /// Continues a path, or ends it.
     pub(crate) fn scatter(&self, hit: &Hit, wo: DVec3, random: &mut Random) -> Option<Scattered> {
         let (ng, ns) = facing(hit, wo);
-        let color = self.color.at(hit.uv);
+        let color = self.color_at(hit);
         let cos = wo.dot(ns).clamp(0.0, 1.0);
         match self.kind {
             Kind::Nothing => None,

@@ -9,6 +9,7 @@
 
 pub(crate) mod adapt;
 mod bsdf;
+mod bulb;
 mod camera;
 mod obj;
 mod random;
@@ -16,17 +17,19 @@ mod shape;
 mod trace;
 
 pub(crate) use bsdf::{dielectric, internal_reflectance};
+pub(crate) use bulb::Bulb;
 pub(crate) use camera::{Camera, Filter};
 pub(crate) use random::Random;
-pub(crate) use shape::{Hit, Shape, closest};
+pub(crate) use shape::{Corners, Hit, Shape, closest};
 pub(crate) use trace::{Estimator, render};
 
-use glam::{DVec2, DVec3};
+use glam::{DAffine2, DVec2, DVec3};
 use std::rc::Rc;
 
 /// A whole scene.
 pub(crate) struct Scene {
     pub(crate) surfaces: Vec<Surface>,
+    pub(crate) bulbs: Vec<Bulb>,
     pub(crate) background: DVec3,
     pub(crate) camera: Camera,
 }
@@ -36,7 +39,9 @@ pub(crate) struct Surface {
     pub(crate) shape: Shape,
     pub(crate) material: Rc<Material>,
     /// Radiance on the side of the geometric normal.
-    pub(crate) emission: DVec3,
+    pub(crate) emission: Color,
+    /// The corners' colours multiply the emission rather than the material.
+    pub(crate) tinted_emission: bool,
     /// Index of the entity in the scene file.
     pub(crate) entity: usize,
 }
@@ -45,6 +50,55 @@ pub(crate) struct Surface {
 pub(crate) struct Material {
     pub(crate) kind: Kind,
     pub(crate) color: Color,
+    /// The corners' colours multiply the colour.
+    pub(crate) tinted: bool,
+    pub(crate) veil: Option<Veil>,
+}
+
+/// How much of a surface is there.
+#[derive(Clone)]
+pub(crate) struct Veil {
+    pub(crate) factor: f64,
+    /// Its red is the alpha.
+    pub(crate) alpha: Option<Image>,
+    /// There if at least this, else a share.
+    pub(crate) cutoff: Option<f64>,
+}
+
+impl Veil {
+    /// Share of rays that meet it.
+    fn presence(&self, hit: &Hit) -> f64 {
+        let alpha = self.alpha.as_ref().map_or(1.0, |image| image.at(hit).x);
+        match self.cutoff {
+            Some(cutoff) if self.factor * alpha >= cutoff => 1.0,
+            Some(_) => 0.0,
+            None => self.factor * alpha,
+        }
+    }
+}
+
+impl Surface {
+    /// Radiance at a hit, on the side of the geometric normal.
+    fn emitted(&self, hit: &Hit) -> DVec3 {
+        let tint = if self.tinted_emission {
+            hit.tint
+        } else {
+            DVec3::ONE
+        };
+        self.emission.at(hit) * tint
+    }
+
+    fn shines(&self) -> bool {
+        !matches!(self.emission, Color::Flat(DVec3::ZERO))
+    }
+
+    /// Share of rays that meet it at a hit.
+    fn presence(&self, hit: &Hit) -> f64 {
+        self.material
+            .veil
+            .as_ref()
+            .map_or(1.0, |veil| veil.presence(hit))
+    }
 }
 
 /// How a material scatters.
@@ -65,6 +119,7 @@ pub(crate) enum Kind {
 }
 
 /// A constant or an image.
+#[derive(Clone)]
 pub(crate) enum Color {
     Flat(DVec3),
     Image(Image),
@@ -79,19 +134,27 @@ pub(crate) enum Wrap {
 }
 
 /// Linear texels, row 0 at the top (v = 1).
+#[derive(Clone)]
 pub(crate) struct Image {
     pub(crate) width: usize,
     pub(crate) height: usize,
     pub(crate) texels: Vec<DVec3>,
-    pub(crate) wrap: Wrap,
+    /// Across and down.
+    pub(crate) wrap: [Wrap; 2],
     pub(crate) bilinear: bool,
+    /// Which coordinates of a hit it takes.
+    pub(crate) second: bool,
+    /// What becomes of them first.
+    pub(crate) map: DAffine2,
+    /// Multiplies the texels.
+    pub(crate) factor: DVec3,
 }
 
 impl Color {
-    pub(crate) fn at(&self, uv: DVec2) -> DVec3 {
+    pub(crate) fn at(&self, hit: &Hit) -> DVec3 {
         match self {
             Color::Flat(c) => *c,
-            Color::Image(image) => image.at(uv),
+            Color::Image(image) => image.at(hit),
         }
     }
 }
@@ -115,16 +178,19 @@ impl Image {
             width,
             height,
             texels,
-            wrap: Wrap::Repeat,
+            wrap: [Wrap::Repeat; 2],
             bilinear: true,
+            second: false,
+            map: DAffine2::IDENTITY,
+            factor: DVec3::ONE,
         }
     }
 
     /// The texel of column i, row j, any integers.
     fn texel(&self, i: i64, j: i64) -> DVec3 {
-        let place = |i: i64, n: usize| -> usize {
+        let place = |i: i64, n: usize, wrap: Wrap| -> usize {
             let n = n as i64;
-            let k = match self.wrap {
+            let k = match wrap {
                 Wrap::Repeat => i.rem_euclid(n),
                 Wrap::Clamp => i.clamp(0, n - 1),
                 Wrap::Mirror => {
@@ -134,11 +200,21 @@ impl Image {
             };
             k as usize
         };
-        self.texels[place(j, self.height) * self.width + place(i, self.width)]
+        let (column, row) = (
+            place(i, self.width, self.wrap[0]),
+            place(j, self.height, self.wrap[1]),
+        );
+        self.texels[row * self.width + column]
+    }
+
+    /// At a hit, by its own coordinates.
+    fn at(&self, hit: &Hit) -> DVec3 {
+        let uv = if self.second { hit.uv1 } else { hit.uv };
+        self.factor * self.look_up(self.map.transform_point2(uv))
     }
 
     /// Texel centres are at half-integers.
-    pub(crate) fn at(&self, uv: DVec2) -> DVec3 {
+    pub(crate) fn look_up(&self, uv: DVec2) -> DVec3 {
         let x = uv.x * self.width as f64;
         let y = (1.0 - uv.y) * self.height as f64;
         if !self.bilinear {

@@ -18,7 +18,15 @@ pub(crate) enum Shape {
         /// Corner normals; flat if none.
         n: Option<[DVec3; 3]>,
         uv: [DVec2; 3],
+        more: Option<Corners>,
     },
+}
+
+/// What few triangles have at their corners.
+#[derive(Clone, Copy)]
+pub(crate) struct Corners {
+    pub(crate) uv1: [DVec2; 3],
+    pub(crate) tint: [DVec3; 3],
 }
 
 /// A ray; `dir` has unit length.
@@ -41,6 +49,10 @@ pub(crate) struct Hit {
     /// Unit, on the side of `ng`.
     pub(crate) ns: DVec3,
     pub(crate) uv: DVec2,
+    /// The second texture coordinates.
+    pub(crate) uv1: DVec2,
+    /// Colour of the corners, 1 where they have none.
+    pub(crate) tint: DVec3,
     /// Smallest of the three barycentric weights; 1 for spheres.
     pub(crate) margin: f64,
 }
@@ -167,10 +179,12 @@ fn hit(scene: &Scene, ray: &Ray, surface: usize, (t, w): Crossing) -> Hit {
                 ng,
                 ns: ng,
                 uv: sphere_uv(axes.transpose() * out),
+                uv1: DVec2::ZERO,
+                tint: DVec3::ONE,
                 margin: 1.0,
             }
         }
-        Shape::Triangle { p, n, uv } => {
+        Shape::Triangle { p, n, uv, more } => {
             let ng = (p[1] - p[0]).cross(p[2] - p[0]).normalize();
             let ns = n.map_or(ng, |n| {
                 (n[0] * w[0] + n[1] * w[1] + n[2] * w[2]).normalize()
@@ -182,6 +196,12 @@ fn hit(scene: &Scene, ray: &Ray, surface: usize, (t, w): Crossing) -> Hit {
                 ng,
                 ns: if ns.dot(ng) < 0.0 { -ns } else { ns },
                 uv: uv[0] * w[0] + uv[1] * w[1] + uv[2] * w[2],
+                uv1: more.map_or(DVec2::ZERO, |m| {
+                    m.uv1[0] * w[0] + m.uv1[1] * w[1] + m.uv1[2] * w[2]
+                }),
+                tint: more.map_or(DVec3::ONE, |m| {
+                    m.tint[0] * w[0] + m.tint[1] * w[1] + m.tint[2] * w[2]
+                }),
                 margin: w[0].min(w[1]).min(w[2]),
             }
         }

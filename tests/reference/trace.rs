@@ -1,7 +1,7 @@
 //! The estimator.
 
-use super::shape::{Ray, closest};
-use super::{Random, Scene};
+use super::shape::{Hit, Ray, closest};
+use super::{Bulb, Random, Scene};
 use crate::stats::Picture;
 use glam::DVec3;
 
@@ -27,7 +27,7 @@ pub(crate) fn render(scene: &Scene, estimator: Estimator, spp: u32, seed: u64) -
             .surfaces
             .iter()
             .enumerate()
-            .filter(|(_, s)| estimator.lamps && s.emission != DVec3::ZERO)
+            .filter(|(_, s)| estimator.lamps && s.shines())
             .map(|(i, _)| i)
             .collect(),
     );
@@ -68,20 +68,30 @@ fn radiance(
     // Whether the lamps on the way were already counted by a light sample.
     let mut counted = false;
     for bounce in 0..=max_bounces {
-        let Some(hit) = closest(scene, &ray) else {
-            return sum + throughput * scene.background;
+        let hit = loop {
+            let Some(hit) = closest(scene, &ray) else {
+                return sum + throughput * scene.background;
+            };
+            let presence = scene.surfaces[hit.surface].presence(&hit);
+            if presence == 1.0 || random.unit() < presence {
+                break hit;
+            }
+            ray = past(&ray, &hit);
         };
         let surface = &scene.surfaces[hit.surface];
         let wo = -ray.dir;
         if !counted && wo.dot(hit.ng) > 0.0 {
-            sum += throughput * surface.emission;
+            sum += throughput * surface.emitted(&hit);
         }
         if bounce == max_bounces {
             break;
         }
+        let here = |wi| surface.material.smooth(&hit, wo, wi) * wi.dot(hit.ns).abs();
+        let from = (hit.position, hit.surface);
+        for bulb in &scene.bulbs {
+            sum += throughput * light_of(scene, bulb, from, here);
+        }
         if !lamps.0.is_empty() {
-            let here = |wi| surface.material.smooth(&hit, wo, wi) * wi.dot(hit.ns).abs();
-            let from = (hit.position, hit.surface);
             sum += throughput * lamps.light(scene, from, here, random);
         }
         let Some(next) = surface.material.scatter(&hit, wo, random) else {
@@ -99,6 +109,49 @@ fn radiance(
         };
     }
     sum
+}
+
+/// The ray beyond what it hit.
+fn past(ray: &Ray, hit: &Hit) -> Ray {
+    Ray {
+        origin: hit.position,
+        dir: ray.dir,
+        from: Some(hit.surface),
+    }
+}
+
+/// Share of light that comes from as far as `distance`.
+fn clear(scene: &Scene, mut ray: Ray, mut distance: f64) -> f64 {
+    let mut share = 1.0;
+    while share > 0.0
+        && let Some(hit) = closest(scene, &ray)
+        && hit.t < distance
+    {
+        share *= 1.0 - scene.surfaces[hit.surface].presence(&hit);
+        ray = past(&ray, &hit);
+        distance -= hit.t;
+    }
+    share
+}
+
+/// All that comes from a bulb: f cos(here) · irradiance.
+fn light_of(
+    scene: &Scene,
+    bulb: &Bulb,
+    (origin, from): (DVec3, usize),
+    here: impl Fn(DVec3) -> DVec3,
+) -> DVec3 {
+    let (dir, distance, irradiance) = bulb.from(origin);
+    let f_cos = here(dir);
+    if f_cos * irradiance == DVec3::ZERO {
+        return DVec3::ZERO;
+    }
+    let ray = Ray {
+        origin,
+        dir,
+        from: Some(from),
+    };
+    f_cos * irradiance * clear(scene, ray, distance)
 }
 
 impl Lamps {
@@ -126,13 +179,21 @@ impl Lamps {
             dir,
             from: Some(from),
         };
-        // The lamp's front is what the ray meets first, or something else is in the way.
-        let seen = closest(scene, &ray)
-            .is_some_and(|h| h.surface == lamp && (h.t * h.t / r2 - 1.0).abs() < 1e-6);
-        if !seen {
-            return DVec3::ZERO;
+        // The lamp's front is what the ray meets behind what lets it pass, or something else is in the way.
+        let (mut ray, mut share, mut way) = (ray, 1.0, 0.0);
+        loop {
+            let Some(hit) = closest(scene, &ray).filter(|_| share > 0.0) else {
+                return DVec3::ZERO;
+            };
+            way += hit.t;
+            let surface = &scene.surfaces[hit.surface];
+            let presence = surface.presence(&hit);
+            if hit.surface == lamp && (way * way / r2 - 1.0).abs() < 1e-6 {
+                let emitted = surface.emitted(&hit) * (presence * share);
+                return f_cos * emitted * (cos_there / r2 * area * self.0.len() as f64);
+            }
+            share *= 1.0 - presence;
+            ray = past(&ray, &hit);
         }
-        let share = area * self.0.len() as f64;
-        f_cos * scene.surfaces[lamp].emission * (cos_there / r2 * share)
     }
 }

@@ -1,10 +1,11 @@
 //! Writes the project's own assets, byte for byte the same on every machine: `make_assets [--cat-triangles N] [-o DIR]`.
 //!
 //! The cat is an implicit surface ([`shape`]), meshed ([`net`]), unwrapped ([`unwrap`]) and painted ([`coat`],
-//! [`paint`]); [`simple`] holds the small test assets. What this writes with its defaults into `assets/` is committed;
+//! [`paint`]); [`simple`] holds the small test assets, [`lattice`] a screen with holes. What this writes with its defaults into `assets/` is committed;
 //! a finer cat is made on demand into a folder of its own. No transcendental function, no hash order and no clock.
 
 mod coat;
+mod lattice;
 mod net;
 mod obj;
 mod paint;
@@ -63,6 +64,12 @@ fn assets(cat_triangles: usize) -> io::Result<Vec<(&'static str, Vec<u8>)>> {
         ("cat.obj", text.into_bytes()),
         ("cat.mtl", CAT_MTL.into()),
         ("cat.png", png(CAT_TEXTURE, &texels)?),
+        ("lattice.obj", lattice::LATTICE.into()),
+        ("lattice.mtl", lattice::LATTICE_MTL.into()),
+        (
+            "lattice.png",
+            png(lattice::LATTICE_SIZE, &lattice::lattice())?,
+        ),
         ("plinth.obj", simple::PLINTH.into()),
         ("plinth.mtl", simple::PLINTH_MTL.into()),
         ("seam_cube.obj", simple::SEAM_CUBE.into()),
@@ -77,7 +84,11 @@ fn assets(cat_triangles: usize) -> io::Result<Vec<(&'static str, Vec<u8>)>> {
 fn png([width, height]: [usize; 2], texels: &[u8]) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width as u32, height as u32);
-    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_color(if texels.len() == 4 * width * height {
+        png::ColorType::Rgba
+    } else {
+        png::ColorType::Rgb
+    });
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     encoder.set_compression(png::Compression::High);
