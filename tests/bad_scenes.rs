@@ -3,7 +3,7 @@
 //! `BLESS=1` writes the expectations and fails, so that nothing approves itself: read the difference, then run again.
 
 use luxel::cli::diagnostics::{Style, render};
-use luxel::{check, diag::codes::SCENE_CODES, scene};
+use luxel::{check, diag::codes::CODES, scene};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -64,7 +64,7 @@ fn every_bad_scene_says_what_is_expected() {
 fn every_code_of_a_scene_has_a_bad_scene() {
     let said: String = scenes().iter().map(|path| said(path)).collect();
     // E001 is about bytes that are not text: a unit test has it.
-    let silent: BTreeSet<&str> = SCENE_CODES
+    let silent: BTreeSet<&str> = CODES
         .iter()
         .map(|&(code, _)| code)
         .filter(|code| *code != "E001" && !said.contains(&format!("[{code}]")))

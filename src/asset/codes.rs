@@ -1,128 +1,70 @@
 //! The codes of this module's diagnostics, `E1xx` and `W1xx`, in one place. Codes are stable: never reused.
 
-/// A file that cannot be opened or read.
-pub const UNREADABLE: &str = "E101";
-/// A mesh file without any face.
-pub const NO_FACES: &str = "E102";
-/// A face that cannot be parsed, or that names a vertex, uv or normal that does not exist.
-pub const BAD_FACE: &str = "E103";
-/// A `v`, `vt` or `vn` line with too few numbers.
-pub const BAD_NUMBER: &str = "E104";
-/// A vertex that a face uses and that is not a number, not finite, or too large.
-pub const BAD_VERTEX: &str = "E105";
-/// A value of an MTL file that cannot be read or is impossible.
-pub const BAD_MATERIAL: &str = "E106";
-/// An image of an unknown or unsuitable format.
-pub const IMAGE_FORMAT: &str = "E107";
-/// An image that is damaged.
-pub const IMAGE_CORRUPT: &str = "E108";
-/// An image, polygon or mesh beyond a documented limit.
-pub const TOO_LARGE: &str = "E109";
-/// The OBJ parser gave something other than what the guard asked for: a bug of luxel.
-pub const PARSER: &str = "E110";
+use crate::diag::codes::codes;
 
-/// A glTF file whose binary container (GLB) is broken, or that is neither GLB nor text.
-pub const GLTF_CONTAINER: &str = "E120";
-/// A glTF file of another version than 2.
-pub const GLTF_VERSION: &str = "E121";
-/// A glTF file whose text is not JSON.
-pub const GLTF_JSON: &str = "E122";
-/// A glTF file that requires an extension which luxel does not have.
-pub const GLTF_REQUIRES: &str = "E123";
-/// A value of a glTF file that is missing, of the wrong kind or impossible.
-pub const GLTF_VALUE: &str = "E124";
-/// An index of a glTF file that leads to nothing.
-pub const GLTF_REFERENCE: &str = "E125";
-/// A buffer of a glTF file, or its URI, that gives fewer bytes than it should, or none.
-pub const GLTF_BUFFER: &str = "E126";
-/// An accessor of a glTF file that cannot be read.
-pub const GLTF_ACCESSOR: &str = "E127";
-/// Nodes of a glTF file that are no forest.
-pub const GLTF_NODES: &str = "E128";
-/// A mesh primitive of a glTF file that cannot be drawn.
-pub const GLTF_PRIMITIVE: &str = "E129";
-/// An index of a glTF mesh primitive that names no vertex.
-pub const GLTF_INDEX: &str = "E130";
-/// An attribute of a glTF mesh primitive whose elements have the wrong number of components.
-pub const GLTF_ATTRIBUTE: &str = "E131";
-
-/// An MTL file that is missing: its materials are replaced by the default.
-pub const MTL_MISSING: &str = "W101";
-/// A `usemtl` that no MTL file defines.
-pub const UNKNOWN_MATERIAL: &str = "W102";
-/// A texture of an MTL file that is missing: the material keeps its colour.
-pub const TEXTURE_MISSING: &str = "W103";
-/// A property of an MTL file that changes the look and that luxel does not model.
-pub const NOT_MODELLED: &str = "W104";
-/// Triangles without area, which are dropped.
-pub const ZERO_AREA: &str = "W105";
-/// Normals that are zero or not finite, which count as absent.
-pub const BAD_NORMAL: &str = "W106";
-/// Texture coordinates that are not finite, which count as absent.
-pub const BAD_UV: &str = "W107";
-/// A face of fewer than three corners, which is skipped.
-pub const SHORT_FACE: &str = "W108";
-/// A face that gives a uv or a normal to only some of its corners, which then counts as giving none.
-pub const MIXED_FACE: &str = "W109";
-/// A colour above 1, taken as 1.
-pub const BRIGHT_COLOR: &str = "W110";
-/// A material that is defined twice: the first counts.
-pub const DUPLICATE_MATERIAL: &str = "W111";
-/// A file that was found by its name beside the file that names it, not where its path says.
-pub const FOUND_BESIDE: &str = "W112";
-/// A texture whose material colour (`Kd`) is black, so that the texture cannot be seen.
-pub const BLACK_FACTOR: &str = "W113";
-/// A self-intersecting polygon, triangulated as well as it goes.
-pub const TANGLED_FACE: &str = "W114";
-/// Faces that name uvs or normals where the file has none at all: they count as absent.
-pub const ABSENT: &str = "W115";
-/// A value of a glTF file that breaks the format where luxel does not need it.
-pub const GLTF_ODD_VALUE: &str = "W120";
-/// A property of a glTF file that the format does not have, and that resembles one that it has.
-pub const GLTF_UNKNOWN_PROPERTY: &str = "W121";
-/// An optional extension of a glTF file which luxel does not have.
-pub const GLTF_EXTENSION: &str = "W122";
-/// Extensions of a glTF file that are declared wrongly.
-pub const GLTF_DECLARATION: &str = "W123";
-/// An empty array or object in a glTF file, which should be absent.
-pub const GLTF_EMPTY: &str = "W124";
-/// A buffer of a glTF file that breaks the format and can be read.
-pub const GLTF_ODD_BUFFER: &str = "W125";
-/// An image of a glTF file that breaks the format or that nothing needs.
-pub const GLTF_IMAGE: &str = "W126";
-/// An accessor or buffer view of a glTF file that breaks a rule of layout and can be read.
-pub const GLTF_LAYOUT: &str = "W127";
-/// Bounds of an accessor of a glTF file that are absent or not those of its elements.
-pub const GLTF_BOUNDS: &str = "W128";
-/// Elements of a glTF file that are out of their range.
-pub const GLTF_ELEMENTS: &str = "W129";
-/// A mesh primitive of a glTF file that breaks a rule and can be drawn.
-pub const GLTF_ODD_PRIMITIVE: &str = "W130";
-/// Nodes or scenes of a glTF file that break a rule and can be placed.
-pub const GLTF_ODD_NODES: &str = "W131";
-/// Animations, skins or morph targets of a glTF file that break a rule; luxel ignores them anyway.
-pub const GLTF_MOTION: &str = "W132";
-/// Cameras, materials or lights of a glTF file that break a rule.
-pub const GLTF_LOOK: &str = "W133";
-/// A glTF container that breaks a rule and can be read.
-pub const GLTF_ODD_CONTAINER: &str = "W134";
-/// A glTF file whose default scene has nothing to render.
-pub const GLTF_NOTHING: &str = "W135";
-/// A glTF file without a scene: its root nodes are shown.
-pub const GLTF_NO_SCENE: &str = "W136";
-/// Primitives of a glTF file that have no triangles, which are skipped.
-pub const GLTF_NO_TRIANGLES: &str = "W137";
-/// Animations, skins or morph targets of a glTF file, which is shown at rest.
-pub const GLTF_AT_REST: &str = "W138";
-/// Cameras of a glTF file that are not perspective.
-pub const GLTF_CAMERA: &str = "W139";
-/// Materials of a glTF file whose gloss luxel does not have.
-pub const GLTF_GLOSS: &str = "W140";
-/// What materials of a glTF file ask for and luxel does not model.
-pub const GLTF_NOT_MODELLED: &str = "W141";
-/// An image of a glTF file that is missing: its materials keep their factors.
-pub const GLTF_IMAGE_MISSING: &str = "W142";
-/// Primitives of a glTF file without the texture coordinates that their material reads.
-pub const GLTF_WITHOUT_UV: &str = "W143";
-/// Unlit materials of a glTF file, which are shown as light sources.
-pub const GLTF_UNLIT: &str = "W144";
+codes! {
+    /// Code and meaning of every diagnostic of mesh and image files, in order.
+    CODES:
+    UNREADABLE = "E101": "a file that cannot be opened or read";
+    NO_FACES = "E102": "a mesh file without any face";
+    BAD_FACE = "E103": "a face that cannot be parsed, or that names a vertex, uv or normal that does not exist";
+    BAD_NUMBER = "E104": "a `v`, `vt` or `vn` line with too few numbers";
+    BAD_VERTEX = "E105": "a vertex that a face uses and that is not a number, not finite, or too large";
+    BAD_MATERIAL = "E106": "a value of an MTL file that cannot be read or is impossible";
+    IMAGE_FORMAT = "E107": "an image of an unknown or unsuitable format";
+    IMAGE_CORRUPT = "E108": "an image that is damaged";
+    TOO_LARGE = "E109": "an image, polygon or mesh beyond a documented limit";
+    PARSER = "E110": "the OBJ parser gave something other than what the guard asked for: a bug of luxel";
+    GLTF_CONTAINER = "E120": "a glTF file whose binary container (GLB) is broken, or that is neither GLB nor text";
+    GLTF_VERSION = "E121": "a glTF file of another version than 2";
+    GLTF_JSON = "E122": "a glTF file whose text is not JSON";
+    GLTF_REQUIRES = "E123": "a glTF file that requires an extension which luxel does not have";
+    GLTF_VALUE = "E124": "a value of a glTF file that is missing, of the wrong kind or impossible";
+    GLTF_REFERENCE = "E125": "an index of a glTF file that leads to nothing";
+    GLTF_BUFFER = "E126": "a buffer of a glTF file, or its URI, that gives fewer bytes than it should, or none";
+    GLTF_ACCESSOR = "E127": "an accessor of a glTF file that cannot be read";
+    GLTF_NODES = "E128": "nodes of a glTF file that are no forest";
+    GLTF_PRIMITIVE = "E129": "a mesh primitive of a glTF file that cannot be drawn";
+    GLTF_INDEX = "E130": "an index of a glTF mesh primitive that names no vertex";
+    GLTF_ATTRIBUTE = "E131": "an attribute of a glTF mesh primitive whose elements have the wrong number of components";
+    MTL_MISSING = "W101": "an MTL file that is missing: its materials are replaced by the default";
+    UNKNOWN_MATERIAL = "W102": "a `usemtl` that no MTL file defines";
+    TEXTURE_MISSING = "W103": "a texture of an MTL file that is missing: the material keeps its colour";
+    NOT_MODELLED = "W104": "a property of an MTL file that changes the look and that luxel does not model";
+    ZERO_AREA = "W105": "triangles without area, which are dropped";
+    BAD_NORMAL = "W106": "normals that are zero or not finite, which count as absent";
+    BAD_UV = "W107": "texture coordinates that are not finite, which count as absent";
+    SHORT_FACE = "W108": "a face of fewer than three corners, which is skipped";
+    MIXED_FACE = "W109": "a face that gives a uv or a normal to only some of its corners, which then counts as giving none";
+    BRIGHT_COLOR = "W110": "a colour above 1, taken as 1";
+    DUPLICATE_MATERIAL = "W111": "a material that is defined twice: the first counts";
+    FOUND_BESIDE = "W112": "a file that was found by its name beside the file that names it, not where its path says";
+    BLACK_FACTOR = "W113": "a texture whose material colour (`Kd`) is black, so that the texture cannot be seen";
+    TANGLED_FACE = "W114": "a self-intersecting polygon, triangulated as well as it goes";
+    ABSENT = "W115": "faces that name uvs or normals where the file has none at all: they count as absent";
+    GLTF_ODD_VALUE = "W120": "a value of a glTF file that breaks the format where luxel does not need it";
+    GLTF_UNKNOWN_PROPERTY = "W121": "a property of a glTF file that the format does not have, and that resembles one that it has";
+    GLTF_EXTENSION = "W122": "an optional extension of a glTF file which luxel does not have";
+    GLTF_DECLARATION = "W123": "extensions of a glTF file that are declared wrongly";
+    GLTF_EMPTY = "W124": "an empty array or object in a glTF file, which should be absent";
+    GLTF_ODD_BUFFER = "W125": "a buffer of a glTF file that breaks the format and can be read";
+    GLTF_IMAGE = "W126": "an image of a glTF file that breaks the format or that nothing needs";
+    GLTF_LAYOUT = "W127": "an accessor or buffer view of a glTF file that breaks a rule of layout and can be read";
+    GLTF_BOUNDS = "W128": "bounds of an accessor of a glTF file that are absent or not those of its elements";
+    GLTF_ELEMENTS = "W129": "elements of a glTF file that are out of their range";
+    GLTF_ODD_PRIMITIVE = "W130": "a mesh primitive of a glTF file that breaks a rule and can be drawn";
+    GLTF_ODD_NODES = "W131": "nodes or scenes of a glTF file that break a rule and can be placed";
+    GLTF_MOTION = "W132": "animations, skins or morph targets of a glTF file that break a rule; luxel ignores them anyway";
+    GLTF_LOOK = "W133": "cameras, materials or lights of a glTF file that break a rule";
+    GLTF_ODD_CONTAINER = "W134": "a glTF container that breaks a rule and can be read";
+    GLTF_NOTHING = "W135": "a glTF file whose default scene has nothing to render";
+    GLTF_NO_SCENE = "W136": "a glTF file without a scene: its root nodes are shown";
+    GLTF_NO_TRIANGLES = "W137": "primitives of a glTF file that have no triangles, which are skipped";
+    GLTF_AT_REST = "W138": "animations, skins or morph targets of a glTF file, which is shown at rest";
+    GLTF_CAMERA = "W139": "cameras of a glTF file that are not perspective";
+    GLTF_GLOSS = "W140": "materials of a glTF file whose gloss luxel does not have";
+    GLTF_NOT_MODELLED = "W141": "what materials of a glTF file ask for and luxel does not model";
+    GLTF_IMAGE_MISSING = "W142": "an image of a glTF file that is missing: its materials keep their factors";
+    GLTF_WITHOUT_UV = "W143": "primitives of a glTF file without the texture coordinates that their material reads";
+    GLTF_UNLIT = "W144": "unlit materials of a glTF file, which are shown as light sources";
+}

@@ -1,17 +1,22 @@
 //! Every stable code of scenes, with what it stands for. A code is never reused for something else.
 //!
-//! `E0xx`/`W0xx` are of the scene file; `E1xx`/`W1xx` are of the assets that it names.
+//! `E0xx`/`W0xx` are of the scene file, here; `E1xx`/`W1xx` of the files that it names (`asset::codes`), `E2xx`/`W2xx` of
+//! the use that it makes of them (`world::codes`), `W3xx` of the scene as a whole once all is loaded (`check::codes`).
 
+/// A constant for each code of a module, and the table of all of them: code and meaning, in order.
 macro_rules! codes {
-    ($($name:ident = $code:literal: $meaning:literal;)*) => {
+    ($(#[$about:meta])* $table:ident: $($name:ident = $code:literal: $meaning:literal;)*) => {
         $(#[doc = concat!("`", $code, "`: ", $meaning, ".")] pub const $name: &str = $code;)*
 
-        /// Code and meaning of every diagnostic of a scene file, in order.
-        pub const SCENE_CODES: &[(&str, &str)] = &[$(($code, $meaning)),*];
+        $(#[$about])*
+        pub const $table: &[(&str, &str)] = &[$(($code, $meaning)),*];
     };
 }
+pub(crate) use codes;
 
 codes! {
+    /// Code and meaning of every diagnostic of a scene file, in order.
+    CODES:
     NOT_TEXT = "E001": "the file is not UTF-8 text";
     SYNTAX = "E002": "the text is not RON";
     WRONG_TYPE = "E003": "a value of another kind is needed here";
