@@ -39,7 +39,7 @@ const RULES: &[Rule] = &[
     (
         "check",
         &["scene", "asset", "world", "diag", "math"],
-        &["strsim"],
+        &["hecs"],
     ),
     (
         "build",

@@ -1,81 +1,79 @@
 //! Warnings about a scene that reads well but is probably not what was meant.
 //!
-//! Enters: a [`SceneDesc`]. Leaves: diagnostics, all at once. Errors of a scene file are found where it is read.
-//! Deliberately absent: assets, pixels.
+//! Enters: a [`SceneDesc`]; then the world and the store that came of it. Leaves: diagnostics, all at once, each at the
+//! entity or the camera that causes it, each with a remedy. Errors of a file are found where it is read.
+//! What may be meant is not warned of: better silent than wrong. Deliberately absent: reading files, pixels.
 
-use crate::diag::{Diagnostic, codes};
+mod angles;
+mod bounds;
+pub mod codes;
+mod inside;
+mod light;
+mod posed;
+mod scale;
+#[cfg(test)]
+mod tests;
+mod uvs;
+mod view;
+mod words;
+
+use crate::asset::AssetStore;
+use crate::diag::codes as scene_codes;
+use crate::diag::{Diagnostic, Lines};
 use crate::scene::{ColorDesc, EntityDesc, SceneDesc, ShapeDesc};
+use hecs::World;
+use posed::Posed;
 use std::collections::BTreeSet;
+pub use uvs::check_mesh;
+pub(crate) use words::short;
 
 /// Samples per pixel above which a warning is due: at 512 × 512 pixels some hundred billion paths, a day or more.
 const MANY_SAMPLES: u32 = 1 << 18;
 
+/// Code and meaning of every diagnostic of every module, in order.
+pub fn all_codes() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let tables = [
+        scene_codes::CODES,
+        crate::asset::codes::CODES,
+        crate::world::codes::CODES,
+        codes::CODES,
+    ];
+    tables.into_iter().flatten().copied()
+}
+
 /// What can be said about a scene without opening the files that it names, in the order of the text.
 #[must_use]
 pub fn check(desc: &SceneDesc) -> Vec<Diagnostic> {
-    let mut found = Vec::new();
-    found.extend(settings(desc));
-    found.extend(unused_materials(desc));
-    found.sort_by_key(|d: &Diagnostic| d.span.as_ref().map(|s| (s.line, s.column)));
-    found.extend(darkness(desc));
+    let lines = Lines::of(&desc.source);
+    let mut found = settings(desc, &lines);
+    found.extend(unused_materials(desc, &lines));
+    found.extend(angles::radians(desc, &lines));
+    in_order(&mut found);
     found
 }
 
-fn warning(
-    desc: &SceneDesc,
-    code: &'static str,
-    place: Option<(usize, usize)>,
-    message: String,
-) -> Diagnostic {
-    let warning = Diagnostic::warning(code, message).in_file(&desc.file);
-    match place {
-        Some((at, len)) => warning.at(&desc.source, at, len),
-        None => warning,
-    }
-}
-
-fn settings(desc: &SceneDesc) -> Vec<Diagnostic> {
-    let mut found = Vec::new();
-    let spp = desc.render.spp;
-    if spp > MANY_SAMPLES {
-        let place = desc.setting_place(&["render", "spp"]);
-        let message = format!("{spp} samples for each pixel may never end");
-        found.push(
-            warning(desc, codes::MANY_SAMPLES, place, message)
-                .hint("halving the noise takes four times the samples"),
-        );
-    }
-    if desc.render.max_bounces == 0 {
-        let place = desc.setting_place(&["render", "max_bounces"]);
-        let message = "with `max_bounces: 0` only emitters and the background are seen".to_owned();
-        found.push(warning(desc, codes::NO_BOUNCES, place, message).hint("1 is direct light"));
-    }
+/// What can be said about a scene whose files are loaded: `world` and `store` are those that
+/// [`crate::world::spawn`] made of `desc`. In the order of the text; what has no place comes last.
+#[must_use]
+pub fn check_world(desc: &SceneDesc, world: &World, store: &AssetStore) -> Vec<Diagnostic> {
+    let Some(posed) = Posed::of(desc, world, store) else {
+        return Vec::new();
+    };
+    let mut found = inside::camera_inside(&posed);
+    found.extend(view::view(&posed));
+    found.extend(scale::blurred_place(&posed));
+    found.extend(scale::other_units(&posed));
+    found.extend(light::units(&posed));
+    found.extend(uvs::partly_textured(&posed));
+    found.extend(empty_files(&posed));
+    found.extend(light::dark(&posed));
+    in_order(&mut found);
     found
 }
 
-fn unused_materials(desc: &SceneDesc) -> impl Iterator<Item = Diagnostic> {
-    let used: BTreeSet<usize> = desc
-        .entities
-        .iter()
-        .filter_map(|e| e.value.material)
-        .collect();
-    desc.materials
-        .iter()
-        .enumerate()
-        .filter(move |(i, _)| !used.contains(i))
-        .map(|(_, material)| {
-            let message = format!("no entity uses the material {:?}", material.name);
-            warning(
-                desc,
-                codes::UNUSED_MATERIAL,
-                Some((material.at, material.len)),
-                message,
-            )
-        })
-}
-
-/// Nothing shines. A mesh without a material may, by its file, and so may a glTF file.
-fn darkness(desc: &SceneDesc) -> Option<Diagnostic> {
+/// What can be said about light where the files could not be loaded: nothing shines unless a file does.
+#[must_use]
+pub fn check_light(desc: &SceneDesc) -> Option<Diagnostic> {
     let may_shine = |e: &EntityDesc| {
         let by_file = matches!(e.shape, Some(ShapeDesc::Mesh { .. }))
             && e.material.is_none()
@@ -85,11 +83,96 @@ fn darkness(desc: &SceneDesc) -> Option<Diagnostic> {
     };
     let dark = desc.background == ColorDesc::Linear([0.0; 3])
         && !desc.entities.iter().any(|e| may_shine(&e.value));
-    dark.then(|| {
-        let message =
-            "nothing shines and the background is black: the image will be black".to_owned();
-        let hint =
-            "give an entity `emissive: (radiance: (10, 10, 10))`, or the scene a `background`";
-        warning(desc, codes::NO_LIGHT, None, message).hint(hint)
-    })
+    dark.then(|| darkness(desc, "nothing shines and the background is black"))
+}
+
+fn darkness(desc: &SceneDesc, why: &str) -> Diagnostic {
+    Diagnostic::warning(
+        scene_codes::NO_LIGHT,
+        format!("{why}: the image will be black"),
+    )
+    .in_file(&desc.file)
+    .hint("give an entity `emissive: (radiance: (10, 10, 10))`, or the scene a `background`")
+}
+
+fn in_order(found: &mut [Diagnostic]) {
+    found.sort_by_key(|d| {
+        let place = d.span.as_ref().map(|s| (s.line, s.column));
+        (place.is_none(), place)
+    });
+}
+
+fn warning(
+    desc: &SceneDesc,
+    lines: &Lines<'_>,
+    code: &'static str,
+    place: Option<(usize, usize)>,
+    message: String,
+) -> Diagnostic {
+    let warning = Diagnostic::warning(code, message).in_file(&desc.file);
+    match place {
+        Some((at, len)) => warning.on(lines, at, len),
+        None => warning,
+    }
+}
+
+fn settings(desc: &SceneDesc, lines: &Lines<'_>) -> Vec<Diagnostic> {
+    let mut found = Vec::new();
+    let spp = desc.render.spp;
+    if spp > MANY_SAMPLES {
+        let place = desc.setting_place(&["render", "spp"]);
+        let message = format!("{spp} samples for each pixel may never end");
+        found.push(
+            warning(desc, lines, scene_codes::MANY_SAMPLES, place, message)
+                .hint("halving the noise takes four times the samples"),
+        );
+    }
+    if desc.render.max_bounces == 0 {
+        let place = desc.setting_place(&["render", "max_bounces"]);
+        let message = "with `max_bounces: 0` only emitters and the background are seen".to_owned();
+        let warning = warning(desc, lines, scene_codes::NO_BOUNCES, place, message);
+        found.push(warning.hint("1 is direct light"));
+    }
+    found
+}
+
+fn unused_materials(desc: &SceneDesc, lines: &Lines<'_>) -> impl Iterator<Item = Diagnostic> {
+    let used: BTreeSet<usize> = desc
+        .entities
+        .iter()
+        .filter_map(|e| e.value.material)
+        .collect();
+    let unused = desc.materials.iter().enumerate();
+    unused
+        .filter(move |(i, _)| !used.contains(i))
+        .map(|(_, m)| {
+            let message = format!("no entity uses the material {:?}", m.name);
+            let place = Some((m.at, m.len));
+            warning(desc, lines, scene_codes::UNUSED_MATERIAL, place, message)
+                .hint("give it to an entity, `material: ..`, or take it out")
+        })
+}
+
+/// glTF files that bring neither a mesh nor a light, for entities that want them to.
+fn empty_files(posed: &Posed) -> Vec<Diagnostic> {
+    let desc = posed.desc;
+    let entities = desc.entities.iter().enumerate();
+    let named = entities.filter_map(|(i, e)| Some((i, e.value.gltf.as_ref()?)));
+    let brings: BTreeSet<usize> = posed
+        .items
+        .iter()
+        .map(|item| item.entity())
+        .chain(posed.lights.iter().map(|lamp| lamp.index.entity as usize))
+        .collect();
+    named
+        .filter(|(i, _)| !brings.contains(i) && posed.view.entity != *i)
+        .map(|(i, gltf)| {
+            let says = format!("{} brings neither meshes nor lights", gltf.path.value);
+            let hint = match gltf.lights {
+                true => "is its default scene empty? Name another file, or take the entity out",
+                false => "its lights are switched off by `lights: false`",
+            };
+            posed.warn(i, "gltf", codes::EMPTY_GLTF, says).hint(hint)
+        })
+        .collect()
 }

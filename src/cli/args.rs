@@ -20,7 +20,7 @@ use std::time::Duration;
 Examples:
   luxel render scenes/hero.ron                     writes hero.png here
   luxel render room.ron -o room.exr --aov normal,depth
-  luxel check room.ron                             every error at once
+  luxel check room.ron                             every error at once, of the scene and of its files
   luxel explain room.ron                           what the scene makes luxel do
   luxel compare quick.exr reference.exr            how wrong a picture is
 
@@ -37,8 +37,8 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// Render one frame of a scene to a PNG or an EXR file
     Render(Box<RenderArgs>),
-    /// List every error and warning of a scene and of the files that it names
-    Check(InspectArgs),
+    /// List every error and warning of a scene and of the files that it names, or of a mesh file
+    Check(CheckArgs),
     /// Show what a scene requires: stages, buffers, bytes, tree, defaults in force
     Explain(InspectArgs),
     /// Measure how far an image is from its reference: RMSE, relMSE, PSNR, bias, FLIP
@@ -114,12 +114,43 @@ pub(crate) struct RenderArgs {
     /// Reflectance of glass and plastic
     #[arg(long, value_enum, default_value_t = FresnelArg::Exact)]
     pub(crate) fresnel: FresnelArg,
+    /// Refuse to render (65) where `luxel check` has warnings
+    #[arg(long)]
+    pub(crate) strict: bool,
     /// Write what the render cost as JSON
     #[arg(long, value_name = "FILE.json")]
     pub(crate) stats: Option<PathBuf>,
 }
 
-/// `luxel check` and `luxel explain`.
+/// `luxel check`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  luxel check room.ron                             the scene and every file that it names
+  luxel check model.glb                            a mesh file by itself (.obj, .gltf, .glb), and what is in it
+  luxel check room.ron --json                      for editors and scripts
+  luxel check --codes                              what E012 and W004 stand for
+
+--json prints {errors, warnings, diagnostics: [{severity, code, message, file, line, column, length, text, pointer,
+hint}, ..]} and, for a mesh file that is good, contents. What is not known is null. Lines, columns and lengths count
+characters from 1; text is the line itself, null where it is very long; pointer is a JSON pointer into a glTF file.
+The text shows the first 20 of a code in a file, the JSON all.")]
+pub(crate) struct CheckArgs {
+    /// The scene (RON), or a mesh file: .obj, .gltf, .glb
+    #[arg(required_unless_present = "codes")]
+    pub(crate) file: Option<PathBuf>,
+    /// Print JSON on stdout
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Exit with 65 if there are warnings
+    #[arg(long)]
+    pub(crate) strict: bool,
+    /// List every code with its meaning
+    #[arg(long, conflicts_with = "file")]
+    pub(crate) codes: bool,
+}
+
+/// `luxel explain`.
 #[derive(Debug, Args)]
 pub(crate) struct InspectArgs {
     /// The scene file (RON)

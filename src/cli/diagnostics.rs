@@ -5,7 +5,15 @@
 use crate::diag::{Diagnostic, Severity};
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 use serde_json::{Value, json};
+use std::collections::HashMap;
 use std::io::{self, IsTerminal, Write};
+use std::path::Path;
+
+/// Bytes of the longest line that is shown with its diagnostic: some scenes are written by programs, in one line.
+const MAX_SHOWN: usize = 1000;
+
+/// So many of one code in one file are shown; the others are counted.
+const MAX_OF_A_KIND: usize = 20;
 
 /// Whether the text is coloured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,15 +46,70 @@ pub fn render(diagnostics: &[Diagnostic], style: Style) -> String {
         Style::Plain => Renderer::plain(),
         Style::Coloured => Renderer::styled(),
     };
+    let mut left = tally(diagnostics);
     let blocks: Vec<String> = diagnostics
         .iter()
-        .map(|d| renderer.render(&[group(d)]))
+        .filter_map(|d| {
+            let (shown, all) = left.get_mut(&kind(d))?;
+            *shown += 1;
+            match *shown {
+                shown if shown < MAX_OF_A_KIND || shown == *all => {
+                    (shown <= MAX_OF_A_KIND).then(|| renderer.render(&[group(d)]))
+                }
+                MAX_OF_A_KIND => {
+                    let more = *all - MAX_OF_A_KIND;
+                    Some(format!(
+                        "{}\n\n{}",
+                        renderer.render(&[group(d)]),
+                        and_more(d, more)
+                    ))
+                }
+                _ => None,
+            }
+        })
         .collect();
     let mut text = blocks.join("\n\n");
     if !text.is_empty() {
         text.push('\n');
     }
     text
+}
+
+/// Diagnostics of one code in one file.
+type Kind<'a> = (&'static str, Option<&'a Path>);
+
+fn kind(diagnostic: &Diagnostic) -> Kind<'_> {
+    (diagnostic.code, diagnostic.file.as_deref())
+}
+
+/// None shown yet, and how many there are, of each kind.
+fn tally(diagnostics: &[Diagnostic]) -> HashMap<Kind<'_>, (usize, usize)> {
+    let mut tally = HashMap::new();
+    for diagnostic in diagnostics {
+        tally.entry(kind(diagnostic)).or_insert((0, 0)).1 += 1;
+    }
+    tally
+}
+
+fn and_more(diagnostic: &Diagnostic, more: usize) -> String {
+    let file = diagnostic.file.as_ref();
+    let place = file.map_or(String::new(), |file| format!(" in {}", file.display()));
+    format!(
+        "... and {} more of {}{place} (`luxel check --json` lists them all)",
+        grouped(more),
+        diagnostic.code
+    )
+}
+
+/// A count with commas between its thousands.
+fn grouped(count: usize) -> String {
+    let digits = count.to_string();
+    let comma = |i: usize| i > 0 && (digits.len() - i).is_multiple_of(3);
+    let grouped = digits.chars().enumerate().map(|(i, digit)| match comma(i) {
+        true => format!(",{digit}"),
+        false => digit.to_string(),
+    });
+    grouped.collect()
 }
 
 /// Writes the diagnostics and their count to standard error.
@@ -83,9 +146,9 @@ pub fn summary(diagnostics: &[Diagnostic]) -> Option<String> {
     (!parts.is_empty()).then(|| parts.join(", "))
 }
 
-/// The diagnostics as a JSON array of objects with `severity`, `code`, `message`, `file`, `line`, `column`, `length`,
-/// `text`, `pointer` and `hint`; what is not known is null. Columns and lengths count characters, from 1; a pointer is
-/// a JSON pointer (RFC 6901) into a glTF file.
+/// The diagnostics as a JSON object: the counts `errors` and `warnings`, and `diagnostics`, an array of objects with
+/// `severity`, `code`, `message`, `file`, `line`, `column`, `length`, `text`, `pointer` and `hint`; what is not known is
+/// null. Columns and lengths count characters, from 1; a pointer is a JSON pointer (RFC 6901) into a glTF file.
 #[must_use]
 pub fn json(diagnostics: &[Diagnostic]) -> Value {
     let object = |d: &Diagnostic| {
@@ -98,12 +161,22 @@ pub fn json(diagnostics: &[Diagnostic]) -> Value {
             "line": span.map(|s| s.line),
             "column": span.map(|s| s.column),
             "length": span.map(|s| s.len),
-            "text": span.map(|s| &s.text),
+            "text": span.map(|s| &*s.text).filter(|text| text.len() <= MAX_SHOWN),
             "pointer": d.pointer,
             "hint": d.hint,
         })
     };
-    diagnostics.iter().map(object).collect()
+    let count = |severity| {
+        diagnostics
+            .iter()
+            .filter(|d| d.severity == severity)
+            .count()
+    };
+    json!({
+        "errors": count(Severity::Error),
+        "warnings": count(Severity::Warning),
+        "diagnostics": diagnostics.iter().map(object).collect::<Vec<_>>(),
+    })
 }
 
 /// A message with its middle left out where it repeats something endless from the input.
@@ -128,11 +201,20 @@ fn group(diagnostic: &Diagnostic) -> Group<'_> {
         .primary_title(clipped(&diagnostic.message))
         .id(diagnostic.code);
     let path = diagnostic.file.as_ref().map(|file| {
-        let pointer = diagnostic.pointer.as_ref();
-        let place = pointer.map_or(String::new(), |pointer| format!("#{pointer}"));
+        let place = match (&diagnostic.pointer, &diagnostic.span) {
+            (Some(pointer), _) => format!("#{pointer}"),
+            (None, Some(span)) if span.text.len() > MAX_SHOWN => {
+                format!(":{}:{}", span.line, span.column)
+            }
+            _ => String::new(),
+        };
         file.to_string_lossy().into_owned() + &place
     });
-    if let Some(span) = &diagnostic.span {
+    if let Some(span) = diagnostic
+        .span
+        .as_ref()
+        .filter(|s| s.text.len() <= MAX_SHOWN)
+    {
         let byte = |chars: u32| {
             let end = span.text.len();
             span.text
@@ -146,7 +228,7 @@ fn group(diagnostic: &Diagnostic) -> Group<'_> {
             .span(marked)
             .label(diagnostic.hint.as_deref());
         return title.element(
-            Snippet::source(span.text.as_str())
+            Snippet::source(&*span.text)
                 .line_start(span.line as usize)
                 .path(path)
                 .annotation(mark),
@@ -216,6 +298,41 @@ error[E128]: no such node: 7
     }
 
     #[test]
+    fn many_of_one_code_are_counted() {
+        let many = |n: usize, file: &str| {
+            let one = Diagnostic::error("E012", "no").in_file(file);
+            vec![one; n]
+        };
+        let shown = |text: &str| text.matches("error[E012]").count();
+        let text = render(&[many(20, "a"), many(1, "b")].concat(), Style::Plain);
+        assert_eq!((shown(&text), text.contains("more of")), (21, false));
+        let text = render(&[many(20_000, "a"), many(3, "b")].concat(), Style::Plain);
+        assert_eq!(shown(&text), 23);
+        assert!(
+            text.contains("\n\n... and 19,980 more of E012 in a ("),
+            "{text}"
+        );
+        let all = json(&many(50, "a"));
+        assert_eq!(all["diagnostics"].as_array().map(Vec::len), Some(50));
+        assert_eq!(
+            [1, 999, 1000, 1_234_567].map(grouped),
+            ["1", "999", "1,000", "1,234,567"]
+        );
+    }
+
+    #[test]
+    fn a_line_without_end_is_not_shown() {
+        let source = "x".repeat(2000);
+        let one = Diagnostic::error("E012", "no")
+            .in_file("a.ron")
+            .at(&source, 1500, 1)
+            .hint("yes");
+        let wanted = "error[E012]: no\n--> a.ron:1:1501\n = help: yes\n";
+        assert_eq!(render(&[one.clone()], Style::Plain), wanted);
+        assert!(json(&[one])["diagnostics"][0]["text"].is_null());
+    }
+
+    #[test]
     fn counts_are_in_the_right_number() {
         assert_eq!(summary(&sample()).as_deref(), Some("3 errors, 1 warning"));
         assert_eq!(summary(&[]), None);
@@ -223,7 +340,12 @@ error[E128]: no such node: 7
 
     #[test]
     fn json_says_the_same() {
-        let array = json(&sample());
+        let object = json(&sample());
+        assert_eq!(
+            (&object["errors"], &object["warnings"]),
+            (&3.into(), &1.into())
+        );
+        let array = &object["diagnostics"];
         assert_eq!(array[0]["line"], 2);
         assert_eq!(array[0]["column"], 7);
         assert_eq!(array[0]["length"], 1);

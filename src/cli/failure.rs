@@ -68,6 +68,17 @@ impl Failure {
         }
     }
 
+    /// `--strict`: warnings count as errors.
+    pub(crate) fn if_any(warnings: &[Diagnostic]) -> Result<(), Failure> {
+        if warnings.is_empty() {
+            return Ok(());
+        }
+        Err(Failure {
+            code: code::DATA,
+            what: What::Message("--strict allows no warnings".to_owned(), None),
+        })
+    }
+
     /// A file named on the command line is there, but its content cannot be used. The message names the file.
     pub(crate) fn bad_file(message: impl fmt::Display) -> Failure {
         Failure {

@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use crate::asset::{AssetStore, Loader};
-use crate::check::check;
+use crate::check::{check, check_light, check_world};
 use crate::diag::Diagnostic;
 use crate::render::{Renderer, Settings};
 use crate::scene::{self, LoadError, SceneDesc};
@@ -27,6 +27,7 @@ pub(crate) fn scene(path: &Path) -> Result<(Loaded, Vec<Diagnostic>), Failure> {
     found.extend(check(&read.desc));
     match world::spawn(&read.desc, Loader::new()) {
         Ok(spawned) => {
+            found.extend(check_world(&read.desc, &spawned.world, &spawned.assets));
             found.extend(spawned.warnings);
             let loaded = Loaded {
                 desc: read.desc,
@@ -36,6 +37,7 @@ pub(crate) fn scene(path: &Path) -> Result<(Loaded, Vec<Diagnostic>), Failure> {
             Ok((loaded, found))
         }
         Err(errors) => {
+            found.extend(check_light(&read.desc));
             found.extend(errors);
             Err(Failure::scene(found))
         }
@@ -47,7 +49,13 @@ fn refuse(path: &Path, error: LoadError) -> Failure {
     match error {
         LoadError::Missing(_) => Failure::no_input(path, &"no such file"),
         LoadError::Unreadable { source, .. } => Failure::no_input(path, &source),
-        LoadError::Invalid(all) => Failure::scene(all),
+        LoadError::Invalid(mut found, desc) => {
+            // An error in the scene hides none in the files.
+            if let Some(desc) = desc {
+                found.extend(world::open_files(&desc, Loader::new()));
+            }
+            Failure::scene(found)
+        }
     }
 }
 

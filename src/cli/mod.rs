@@ -6,6 +6,7 @@
 mod args;
 mod check;
 mod compare;
+mod contents;
 pub mod diagnostics;
 mod explain;
 mod failure;

@@ -29,6 +29,9 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let (loaded, warnings) = load::scene(&args.scene)?;
     // If nobody listens on stderr, so be it.
     let _ = diagnostics::print(&warnings);
+    if args.strict {
+        Failure::if_any(&warnings)?;
+    }
     if !args.nee.is_on() && loaded.has_punctual_lights() {
         say("warning: with --nee off, lights without extent (`light: ..`) do not shine");
     }

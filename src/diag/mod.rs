@@ -3,6 +3,9 @@
 //! Deliberately absent: printing, colours, exit codes.
 
 pub mod codes;
+mod lines;
+
+pub use lines::{Lines, Span};
 
 use std::fmt;
 use std::path::PathBuf;
@@ -14,19 +17,6 @@ pub enum Severity {
     Warning,
     /// The scene cannot be rendered.
     Error,
-}
-
-/// A place in a text file.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Span {
-    /// Line, from 1.
-    pub line: u32,
-    /// Column in characters, from 1.
-    pub column: u32,
-    /// Length in characters, at least 1; a span ends with its line.
-    pub len: u32,
-    /// The line itself, without its line end.
-    pub text: String,
 }
 
 /// One thing to say about an input.
@@ -84,6 +74,13 @@ impl Diagnostic {
         self
     }
 
+    /// Adds the place of the byte range `at..at + len` of a text whose lines are known.
+    #[must_use]
+    pub fn on(mut self, lines: &Lines<'_>, at: usize, len: usize) -> Diagnostic {
+        self.span = Some(lines.span(at, len));
+        self
+    }
+
     /// Adds the place in a JSON file as a pointer.
     #[must_use]
     pub fn pointer(mut self, pointer: impl Into<String>) -> Diagnostic {
@@ -97,35 +94,6 @@ impl Diagnostic {
         self.hint = Some(hint.into());
         self
     }
-}
-
-impl Span {
-    /// The place of the bytes `at..at + len` of `source`, cut at the end of the line that it starts in.
-    #[must_use]
-    pub fn of_bytes(source: &str, at: usize, len: usize) -> Span {
-        let at = floor_boundary(source, at);
-        let start = source[..at].rfind('\n').map_or(0, |i| i + 1);
-        let end = source[at..].find('\n').map_or(source.len(), |i| at + i);
-        let text = source[start..end].trim_end_matches('\r').to_owned();
-        let stop = floor_boundary(source, (at + len).min(end));
-        let count = |s: &str| u32::try_from(s.chars().count()).unwrap_or(u32::MAX);
-        let line = u32::try_from(source[..start].matches('\n').count() + 1).unwrap_or(u32::MAX);
-        let column = count(&source[start..at]).saturating_add(1);
-        Span {
-            line,
-            column,
-            len: count(&source[at..stop.max(at)]).max(1),
-            text,
-        }
-    }
-}
-
-fn floor_boundary(s: &str, i: usize) -> usize {
-    let mut i = i.min(s.len());
-    while !s.is_char_boundary(i) {
-        i -= 1;
-    }
-    i
 }
 
 impl fmt::Display for Diagnostic {

@@ -1,9 +1,10 @@
 //! RON text, one layer at a time: the text of a value enters, the texts of its parts leave, each with its place.
 //!
-//! The `ron` crate is the grammar: it cuts the layers (`RawValue` borrows from the source, so an offset is a
-//! difference of addresses) and reads the literals. Reading layer by layer keeps an error in one part from hiding
+//! The `ron` crate is the grammar: it reads the whole once, cuts the layers (`RawValue` borrows from the source, so an
+//! offset is a difference of addresses) where `split` cannot, and reads the literals. Reading layer by layer keeps an error in one part from hiding
 //! those in the others. Deliberately absent: meaning, defaults, diagnostics.
 
+use super::split::{self, Part};
 use ron::Options;
 use ron::error::{Position, SpannedError};
 use ron::value::RawValue;
@@ -79,15 +80,14 @@ impl<'a> Node<'a> {
         {
             return Err(LayerError::OtherKind);
         }
+        if let Some(pairs) = self.pairs(|key| identifier_len(key) == key.len()) {
+            return Ok(pairs);
+        }
         let pairs = self.cut(|de| de.deserialize_struct("", &[], Pairs::<&str>(PhantomData)))?;
-        let place = |key: &'a str| Node {
-            text: key,
-            at: self.offset(key),
-        };
         Ok(pairs
             .into_iter()
             .map(|(key, value)| Pair {
-                key: place(key),
+                key: self.node(key),
                 value: self.part(value),
             })
             .collect())
@@ -107,6 +107,9 @@ impl<'a> Node<'a> {
         if !self.text.starts_with('{') {
             return Err(LayerError::OtherKind);
         }
+        if let Some(pairs) = self.pairs(|_| true) {
+            return Ok(pairs);
+        }
         let pairs = self.cut(|de| de.deserialize_map(Pairs::<&RawValue>(PhantomData)))?;
         Ok(pairs
             .into_iter()
@@ -122,6 +125,9 @@ impl<'a> Node<'a> {
         if !self.text.starts_with('(') {
             return Err(LayerError::OtherKind);
         }
+        if let Some(items) = self.items() {
+            return Ok(items);
+        }
         let items = self.cut(|de| de.deserialize_tuple(0, Items))?;
         Ok(items.into_iter().map(|raw| self.part(raw)).collect())
     }
@@ -130,6 +136,9 @@ impl<'a> Node<'a> {
     pub(super) fn list(self) -> Result<Vec<Node<'a>>, LayerError> {
         if !self.text.starts_with('[') {
             return Err(LayerError::OtherKind);
+        }
+        if let Some(items) = self.items() {
+            return Ok(items);
         }
         let items = self.cut(|de| de.deserialize_seq(Items))?;
         Ok(items.into_iter().map(|raw| self.part(raw)).collect())
@@ -172,6 +181,34 @@ impl<'a> Node<'a> {
         }
     }
 
+    /// Names and values by their brackets; `None` where `ron` has to look.
+    fn pairs(self, is_key: impl Fn(&str) -> bool) -> Option<Vec<Pair<'a>>> {
+        let parts = split::parts(self.text)?.into_iter();
+        let pair = |part: Part<'a>| {
+            let key = part.key.filter(|key| is_key(key))?;
+            Some(Pair {
+                key: self.node(key),
+                value: self.node(part.value),
+            })
+        };
+        parts.map(pair).collect()
+    }
+
+    /// Values by their brackets; `None` where `ron` has to look.
+    fn items(self) -> Option<Vec<Node<'a>>> {
+        let parts = split::parts(self.text)?.into_iter();
+        let item = |part: Part<'a>| match part.key {
+            None => Some(self.node(part.value)),
+            Some(_) => None,
+        };
+        parts.map(item).collect()
+    }
+
+    fn node(self, text: &'a str) -> Node<'a> {
+        let at = self.offset(text);
+        Node { text, at }
+    }
+
     fn cut<T>(
         self,
         read: impl FnOnce(&mut ron::Deserializer<'a>) -> ron::Result<T>,
@@ -191,10 +228,7 @@ impl<'a> Node<'a> {
         } else {
             text.trim()
         };
-        Node {
-            text,
-            at: self.offset(text),
-        }
+        self.node(text)
     }
 
     fn offset(self, part: &'a str) -> usize {

@@ -5,6 +5,7 @@ use super::reader::{Fields, Reader};
 use super::schema::{ColorDesc, MaterialDesc, NamedMaterial};
 use super::values::{ColorRole, Domain};
 use crate::diag::codes;
+use std::collections::HashMap;
 
 /// Indices of refraction are above this and below the next, far beyond any matter: glass multiplies radiance by the
 /// squared index, and a plastic divides by what its coat lets out, about 1 / n³, in single precision.
@@ -21,15 +22,13 @@ pub(super) fn materials<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<Vec<N
         "a map {\"name\": material, ..}",
     )?;
     let mut materials: Vec<NamedMaterial> = Vec::with_capacity(entries.len());
+    let mut first_of: HashMap<String, usize> = HashMap::with_capacity(entries.len());
     for entry in entries {
         let Some(name) = reader.string(entry.key, "the name of a material") else {
             continue;
         };
-        if let Some(first) = materials.iter().find(|m| m.name == name) {
-            let line = reader.line(Node {
-                at: first.at,
-                ..entry.value
-            });
+        if let Some(&at) = first_of.get(&name) {
+            let line = reader.line(Node { at, ..entry.value });
             let hint = format!("the first one is in line {line}");
             reader.error_hint(
                 codes::DUPLICATE_NAME,
@@ -37,6 +36,8 @@ pub(super) fn materials<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<Vec<N
                 format!("the material {name:?} is given twice"),
                 hint,
             );
+        } else {
+            first_of.insert(name.clone(), entry.value.at);
         }
         let material = material(reader, entry.value).unwrap_or_default();
         let (at, len) = (entry.value.at, entry.value.text.len());

@@ -15,6 +15,7 @@ mod reader;
 mod resolve;
 pub mod schema;
 mod settings;
+mod split;
 mod srgb;
 mod syntax;
 mod values;
@@ -59,9 +60,10 @@ pub enum LoadError {
         /// What the system says.
         source: std::io::Error,
     },
-    /// The file is not a scene: every error and warning, in the order of the text.
+    /// The file is not a scene: every error and warning, in the order of the text, and what could be read of it in
+    /// spite of them, for a look at the files that it names.
     #[error("the scene has errors")]
-    Invalid(Vec<Diagnostic>),
+    Invalid(Vec<Diagnostic>, Option<Box<SceneDesc>>),
 }
 
 /// Reads and checks a scene file.
@@ -79,16 +81,17 @@ pub fn load(path: &Path) -> Result<Loaded, LoadError> {
     let text = match std::str::from_utf8(&bytes) {
         Ok(text) => text,
         Err(error) => {
-            return Err(LoadError::Invalid(vec![not_text(
-                &bytes,
-                error.valid_up_to(),
-                path,
-            )]));
+            let found = vec![not_text(&bytes, error.valid_up_to(), path)];
+            return Err(LoadError::Invalid(found, None));
         }
     };
-    parse(text, path)
-        .map(|(desc, warnings)| Loaded { desc, warnings })
-        .map_err(LoadError::Invalid)
+    match read_text(text, path) {
+        (Some(desc), found) if !has_errors(&found) => Ok(Loaded {
+            desc,
+            warnings: found,
+        }),
+        (desc, found) => Err(LoadError::Invalid(found, desc.map(Box::new))),
+    }
 }
 
 /// The bytes of a scene file, which may be a pipe.
@@ -110,6 +113,18 @@ fn read(path: &Path) -> std::io::Result<Vec<u8>> {
 /// # Errors
 /// Every error of the scene, among its warnings, in the order of the text; of errors of syntax only the first.
 pub fn parse(text: &str, file: &Path) -> Result<(SceneDesc, Vec<Diagnostic>), Vec<Diagnostic>> {
+    match read_text(text, file) {
+        (Some(desc), found) if !has_errors(&found) => Ok((desc, found)),
+        (_, found) => Err(found),
+    }
+}
+
+fn has_errors(found: &[Diagnostic]) -> bool {
+    found.iter().any(|d| d.severity == Severity::Error)
+}
+
+/// What can be read of a scene, and everything that there is to say about it.
+fn read_text(text: &str, file: &Path) -> (Option<SceneDesc>, Vec<Diagnostic>) {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     // A comment in the last line needs its line end.
     let source: Arc<str> = if text.ends_with('\n') {
@@ -126,11 +141,7 @@ pub fn parse(text: &str, file: &Path) -> Result<(SceneDesc, Vec<Diagnostic>), Ve
         }
         Err(LayerError::OtherKind) => None,
     };
-    let found = reader.into_found();
-    match desc {
-        Some(desc) if found.iter().all(|d| d.severity == Severity::Warning) => Ok((desc, found)),
-        _ => Err(found),
-    }
+    (desc, reader.into_found())
 }
 
 fn scene<'a>(reader: &Reader<'a>, document: Node<'a>, source: &Arc<str>) -> Option<SceneDesc> {

@@ -4,15 +4,22 @@
 
 use super::layer::{LayerError, Node, Pair};
 use super::syntax;
-use crate::diag::{Diagnostic, codes};
-use std::cell::RefCell;
+use crate::diag::{Diagnostic, Lines, codes};
+use std::cell::{Cell, RefCell};
 use std::path::Path;
+
+/// So many names are compared with wrong ones in all: a fraction of a second. Where so much is wrong, the first
+/// suggestions tell what.
+const MAX_COMPARISONS: usize = 1 << 17;
 
 /// The file being read and what was found in it.
 pub(super) struct Reader<'a> {
     pub(super) source: &'a str,
     pub(super) file: &'a Path,
+    lines: Lines<'a>,
     found: RefCell<Vec<Diagnostic>>,
+    /// Names that may still be compared for suggestions.
+    comparisons: Cell<usize>,
 }
 
 impl<'a> Reader<'a> {
@@ -20,7 +27,9 @@ impl<'a> Reader<'a> {
         Reader {
             source,
             file,
+            lines: Lines::of(source),
             found: RefCell::default(),
+            comparisons: Cell::new(MAX_COMPARISONS),
         }
     }
 
@@ -50,8 +59,8 @@ impl<'a> Reader<'a> {
         place: Node<'_>,
         message: impl Into<String>,
     ) -> Diagnostic {
-        Diagnostic::error(code, message).in_file(self.file).at(
-            self.source,
+        Diagnostic::error(code, message).in_file(self.file).on(
+            &self.lines,
             place.at,
             place.text.len(),
         )
@@ -59,7 +68,18 @@ impl<'a> Reader<'a> {
 
     /// Line of a place, from 1.
     pub(super) fn line(&self, place: Node<'_>) -> usize {
-        self.source[..place.at].matches('\n').count() + 1
+        self.lines.number(place.at)
+    }
+
+    /// The name among `known` that `found` was probably meant to be; after very many wrong names, none.
+    pub(super) fn meant<'n>(
+        &self,
+        found: &str,
+        known: impl ExactSizeIterator<Item = &'n str>,
+    ) -> Option<&'n str> {
+        let left = self.comparisons.get().checked_sub(known.len())?;
+        self.comparisons.set(left);
+        suggest(found, known)
     }
 
     /// Everything found, in the order of the text; what has no place comes last.
@@ -123,7 +143,7 @@ impl<'a> Reader<'a> {
             codes::UNKNOWN_VARIANT,
             node.head_place(),
             format!("{name} cannot be `{found}`"),
-            suggest(found, known.iter().copied()).map_or_else(
+            self.meant(found, known.iter().copied()).map_or_else(
                 || format!("it is one of {}", known.join(", ")),
                 |best| format!("did you mean `{best}`?"),
             ),
@@ -178,7 +198,7 @@ impl<'r, 'a> Fields<'r, 'a> {
         for pair in pairs {
             let key = pair.key.text;
             if !known.contains(&key) {
-                let meant = suggest(key, known.iter().copied());
+                let meant = reader.meant(key, known.iter().copied());
                 misspelt.extend(meant);
                 let hint = meant.map_or_else(
                     || format!("its fields are {}", known.join(", ")),
@@ -274,10 +294,7 @@ impl<'r, 'a> Fields<'r, 'a> {
 }
 
 /// The name among `known` that `found` was probably meant to be.
-pub(super) fn suggest<'n>(
-    found: &str,
-    known: impl IntoIterator<Item = &'n str>,
-) -> Option<&'n str> {
+fn suggest<'n>(found: &str, known: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
     /// One slip per so many letters is still taken for the same word.
     const LETTERS_PER_SLIP: usize = 3;
     /// So many letters that begin a name are taken for it.

@@ -2,7 +2,7 @@
 
 use super::entity::RawEntity;
 use super::layer::Node;
-use super::reader::{Reader, suggest};
+use super::reader::Reader;
 use super::schema::{NamedMaterial, ShapeDesc};
 use crate::diag::{Diagnostic, codes};
 use std::collections::BTreeMap;
@@ -26,14 +26,14 @@ pub(super) fn resolve(
                     reader,
                     *place,
                     &format!("entity named {name:?}"),
-                    suggest(name, names.keys().map(String::as_str)),
+                    reader.meant(name, names.keys().map(String::as_str)),
                 );
             }
         }
         if let Some((name, place)) = &entity.material {
             entity.desc.material = material_names.get(name.as_str()).copied();
             if entity.desc.material.is_none() {
-                let best = suggest(name, materials.iter().map(|m| m.name.as_str()));
+                let best = reader.meant(name, materials.iter().map(|m| m.name.as_str()));
                 unknown(reader, *place, &format!("material {name:?}"), best);
             }
         }

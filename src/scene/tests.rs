@@ -372,7 +372,7 @@ fn bytes_that_are_not_text_are_refused_with_their_place() {
     std::fs::write(&path, b"Scene(\n  version: \xff1)").expect("the temporary folder is writable");
     let found = load(&path);
     std::fs::remove_file(&path).expect("the file was there");
-    let Err(LoadError::Invalid(found)) = found else {
+    let Err(LoadError::Invalid(found, None)) = found else {
         panic!("{found:?}");
     };
     let place = found[0].span.as_ref().map(|s| (s.line, s.column));
@@ -387,4 +387,27 @@ fn the_order_of_the_text_is_the_order_of_the_errors() {
     };
     let codes: Vec<&str> = found.iter().map(|d| d.code).collect();
     assert_eq!(codes, ["E012", "E011", "E014"]);
+}
+
+#[test]
+fn brackets_are_cut_as_ron_cuts_them() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let mut read_ones = 0;
+    for entry in std::fs::read_dir(folder).expect("the folder of scenes") {
+        let path = entry.expect("an entry").path();
+        let text = std::fs::read_to_string(path).expect("a scene");
+        // A block comment sends a layer to `ron`; blanks of the same length do not.
+        let [ours, rons] = ["    ", "/**/"].map(|blank| {
+            let open = |bracket: &str| format!("{bracket}{blank}");
+            let text = text.replace('(', &open("(")).replace("[\n", &open("[\n"));
+            let desc = good(&text.replace("{\n", &open("{\n")));
+            format!(
+                "{:?}",
+                (desc.render, desc.camera, desc.materials, desc.entities)
+            )
+        });
+        assert_eq!(ours, rons);
+        read_ones += 1;
+    }
+    assert!(read_ones >= 10);
 }

@@ -2,7 +2,7 @@
 
 use super::codes;
 use crate::asset::{AssetStore, Loader, MeshId, ModelId, TextureId};
-use crate::diag::{Diagnostic, Span};
+use crate::diag::{Diagnostic, Lines};
 use crate::scene::{Placed, SceneDesc};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 /// The loader with the scene whose places it reports at.
 pub(super) struct Files<'a> {
     desc: &'a SceneDesc,
+    lines: Lines<'a>,
     loader: Loader,
     /// Files whose errors were reported, at the first place that names them.
     failed: BTreeSet<PathBuf>,
@@ -20,6 +21,7 @@ impl<'a> Files<'a> {
     pub(super) fn new(desc: &'a SceneDesc, loader: Loader) -> Files<'a> {
         Files {
             desc,
+            lines: Lines::of(&desc.source),
             loader,
             failed: BTreeSet::new(),
             errors: Vec::new(),
@@ -99,7 +101,7 @@ impl<'a> Files<'a> {
     fn at(&self, named: &Placed<String>, diagnostic: Diagnostic) -> Diagnostic {
         diagnostic
             .in_file(&self.desc.file)
-            .at(&self.desc.source, named.at, named.len)
+            .on(&self.lines, named.at, named.len)
     }
 
     /// The store, warnings and errors.
@@ -133,20 +135,20 @@ impl<'a> Files<'a> {
         }
     }
 
-    /// An error with a line of its own keeps it and says who names the file; any other is put where the file is named.
+    /// An error with a line or a pointer of its own keeps it and says who names the file; any other is put where the file is named.
     fn place(&self, error: Diagnostic, path: &Path, named: &Placed<String>) -> Diagnostic {
-        let SceneDesc { file, source, .. } = self.desc;
-        if error.span.is_none() {
+        let file = &self.desc.file;
+        if error.span.is_none() && error.pointer.is_none() {
             let about = error.file.as_deref().unwrap_or(path).display();
             return Diagnostic {
                 message: format!("{about}: {}", error.message),
                 ..error
             }
             .in_file(file)
-            .at(source, named.at, named.len);
+            .on(&self.lines, named.at, named.len);
         }
-        let Span { line, column, .. } = Span::of_bytes(source, named.at, named.len);
-        let names = format!("named in {}:{line}:{column}", file.display());
+        let at = self.lines.span(named.at, named.len);
+        let names = format!("named in {}:{}:{}", file.display(), at.line, at.column);
         let hint = match &error.hint {
             Some(hint) => format!("{hint}; {names}"),
             None => names,

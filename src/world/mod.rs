@@ -18,4 +18,4 @@ pub use components::{
     Scattering, Shape, Spin, Transform,
 };
 pub use pose::{pose, poses};
-pub use spawn::{Spawned, spawn};
+pub use spawn::{Spawned, open_files, spawn};

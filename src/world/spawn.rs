@@ -114,6 +114,22 @@ pub fn spawn(desc: &SceneDesc, loader: Loader) -> Result<Spawned, Vec<Diagnostic
     }
 }
 
+/// Loads every file that a scene names and gives what there is to say about them: for a scene that has errors of its own
+/// and does not become a world.
+#[must_use]
+pub fn open_files(desc: &SceneDesc, loader: Loader) -> Vec<Diagnostic> {
+    let mut files = Files::new(desc, loader);
+    for named in &desc.materials {
+        material(&named.material, &mut files);
+    }
+    for entity in &desc.entities {
+        Source::load(&entity.value, &mut files);
+    }
+    let (_, warnings, mut found) = files.finish();
+    found.extend(warnings);
+    found
+}
+
 /// What an entity's triangles come from.
 #[derive(Clone, Copy)]
 enum Source {
