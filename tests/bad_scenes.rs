@@ -27,6 +27,7 @@ fn said(path: &Path) -> String {
         Err(found) => found,
         Ok((desc, mut warnings)) => {
             warnings.extend(check::check(&desc));
+            warnings.extend(check::check_light(&desc));
             warnings
         }
     };

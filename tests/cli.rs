@@ -327,12 +327,12 @@ fn check_and_explain_answer_people_and_scripts() {
     let json = folder.run(&["check", "--json", "unused.ron"]);
     expect(&json, 0, &[]);
     let found: serde_json::Value = serde_json::from_slice(&json.stdout).expect("JSON");
-    assert_eq!(found[0]["severity"], "warning");
+    assert_eq!(found["diagnostics"][0]["severity"], "warning");
     fs::write(folder.path("bad.ron"), SCENE.replace("spp: 3", "spp: 0")).expect("writable");
     let json = folder.run(&["check", "--json", "bad.ron"]);
     expect(&json, 65, &[]);
     let found: serde_json::Value = serde_json::from_slice(&json.stdout).expect("JSON");
-    assert_eq!(found[0]["line"], 4);
+    assert_eq!(found["diagnostics"][0]["line"], 4);
 
     let explained = text(&folder.run(&["explain", "scene.ron"]).stdout);
     for words in [

@@ -17,6 +17,9 @@ use std::f64::consts::PI;
 /// Winding number above which a point counts as inside.
 const INSIDE: f64 = 0.5;
 
+/// So many shapes around the camera are looked at: each against all others.
+const MAX_TOLD: usize = 100;
+
 /// Every mesh and sphere that the camera should not be in.
 pub(super) fn camera_inside(posed: &Posed) -> Vec<Diagnostic> {
     let around: Vec<&Item> = posed
@@ -30,7 +33,12 @@ pub(super) fn camera_inside(posed: &Posed) -> Vec<Diagnostic> {
         }
         Form::Mesh(_) => winding_at(posed, item, posed.view.eye) > INSIDE,
     };
-    let around: Vec<&Item> = around.iter().filter(inside).copied().collect();
+    let around: Vec<&Item> = around
+        .iter()
+        .filter(inside)
+        .take(MAX_TOLD)
+        .copied()
+        .collect();
     around
         .iter()
         .filter_map(|item| verdict(posed, item, &around))

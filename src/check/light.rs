@@ -1,5 +1,6 @@
 //! Light: whether anything shines once the files are loaded, and whether the lights' units can be meant.
 
+use super::bounds::Bounds;
 use super::posed::{Form, Item, Lamp, Posed};
 use super::{codes, darkness};
 use crate::asset::Light;
@@ -47,10 +48,11 @@ pub(super) fn shines(posed: &Posed, item: &Item) -> bool {
 
 /// Lights without extent that burn the picture out, or that are its only light and leave it black.
 pub(super) fn units(posed: &Posed) -> Option<Diagnostic> {
+    let scene = posed.subject();
     let strongest = posed
         .lights
         .iter()
-        .map(|lamp| (paper(posed, lamp), lamp))
+        .map(|lamp| (paper(scene.as_ref(), lamp), lamp))
         .max_by(|a, b| a.0.total_cmp(&b.0))?;
     let (radiance, lamp) = strongest;
     let alone = posed.desc.background == ColorDesc::Linear([0.0; 3])
@@ -86,12 +88,12 @@ pub(super) fn units(posed: &Posed) -> Option<Diagnostic> {
 }
 
 /// Radiance of white paper that faces the light in the middle of the scene, at least a quarter of the scene away.
-fn paper(posed: &Posed, lamp: &Lamp) -> f64 {
+fn paper(scene: Option<&Bounds>, lamp: &Lamp) -> f64 {
     let strength = strength(&lamp.light);
     if matches!(lamp.light, Light::Sun { .. }) {
         return strength / PI;
     }
-    let Some(scene) = posed.subject() else {
+    let Some(scene) = scene else {
         return WELL_EXPOSED;
     };
     let distance = (scene.center() - lamp.place)

@@ -140,7 +140,7 @@ pub(super) fn translate<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<[f64;
 pub(super) fn scale<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<[f64; 3]> {
     let scale = if node.text.starts_with('(') {
         reader.vector(node, "`scale`", Domain::Any)?
-    } else if node.literal::<f64>().is_ok() {
+    } else if node.number().is_some() {
         [reader.number(node, "`scale`", Domain::Any)?; 3]
     } else {
         return reader.wrong_type(node, "`scale`", "a number or three numbers in parentheses");

@@ -144,6 +144,29 @@ impl<'a> Node<'a> {
         Ok(items.into_iter().map(|raw| self.part(raw)).collect())
     }
 
+    /// Reads a number. The usual digits need no `ron`.
+    pub(super) fn number(self) -> Option<f64> {
+        let digits = self.text.strip_prefix('-').unwrap_or(self.text);
+        let plain = |b: u8| b.is_ascii_digit() || b == b'.';
+        let usual = digits.starts_with(|c: char| c.is_ascii_digit()) && digits.bytes().all(plain);
+        match usual {
+            true => self.text.parse().ok(),
+            false => self.literal().ok(),
+        }
+    }
+
+    /// Reads a string. One without escapes needs no `ron`.
+    pub(super) fn string(self) -> Option<String> {
+        let inside = self
+            .text
+            .strip_prefix('"')
+            .and_then(|t| t.strip_suffix('"'));
+        match inside.filter(|inside| !inside.contains(['"', '\\'])) {
+            Some(inside) => Some(inside.to_owned()),
+            None => self.literal().ok(),
+        }
+    }
+
     /// Reads a literal.
     pub(super) fn literal<T: Deserialize<'a>>(self) -> Result<T, SpannedError> {
         ron::from_str(self.text)

@@ -40,8 +40,8 @@ pub(super) fn resolve(
         check_components(reader, entity);
     }
     break_cycles(reader, entities);
-    for i in 0..entities.len() {
-        check_sphere(reader, entities, i);
+    for (i, stretcher) in stretchers(entities).into_iter().enumerate() {
+        check_sphere(reader, entities, i, stretcher);
     }
 }
 
@@ -178,35 +178,54 @@ fn report_cycle(reader: &Reader<'_>, entities: &[RawEntity<'_>], cycle: &[usize]
     );
 }
 
+/// For each entity, the nearest of itself and its ancestors that has a non-uniform scale.
+fn stretchers(entities: &[RawEntity<'_>]) -> Vec<Option<usize>> {
+    let stretches = |i: usize| {
+        let [x, y, z] = entities[i].desc.transform.scale;
+        x.abs() != y.abs() || y.abs() != z.abs()
+    };
+    let mut known: Vec<Option<Option<usize>>> = vec![None; entities.len()];
+    let mut chain = Vec::new();
+    for start in 0..entities.len() {
+        let mut next = Some(start);
+        while let Some(i) = next.filter(|i| known[*i].is_none()) {
+            chain.push(i);
+            next = entities[i].desc.parent;
+        }
+        let mut above = next.and_then(|i| known[i]).flatten();
+        while let Some(i) = chain.pop() {
+            above = if stretches(i) { Some(i) } else { above };
+            known[i] = Some(above);
+        }
+    }
+    known.into_iter().map(Option::flatten).collect()
+}
+
 /// A sphere must stay a sphere.
-fn check_sphere(reader: &Reader<'_>, entities: &[RawEntity<'_>], index: usize) {
+fn check_sphere(
+    reader: &Reader<'_>,
+    entities: &[RawEntity<'_>],
+    index: usize,
+    stretcher: Option<usize>,
+) {
     let sphere = &entities[index];
-    let (Some(ShapeDesc::Sphere { .. }), Some(place)) = (&sphere.desc.shape, sphere.shape) else {
+    let (Some(ShapeDesc::Sphere { .. }), Some(place), Some(by)) =
+        (&sphere.desc.shape, sphere.shape, stretcher)
+    else {
         return;
     };
-    let mut next = Some(index);
-    while let Some(i) = next {
-        let [x, y, z] = entities[i].desc.transform.scale;
-        if x.abs() != y.abs() || y.abs() != z.abs() {
-            let whose = if i == index {
-                "its own".to_owned()
-            } else {
-                format!("the ancestor {:?}'s", label(&entities[i]))
-            };
-            let message = format!(
-                "the sphere {:?} is stretched by {whose} non-uniform scale ({x}, {y}, {z})",
-                label(sphere)
-            );
-            reader.error_hint(
-                codes::STRETCHED_SPHERE,
-                place,
-                message,
-                "scale it by one number, or use a mesh",
-            );
-            return;
-        }
-        next = entities[i].desc.parent;
-    }
+    let [x, y, z] = entities[by].desc.transform.scale;
+    let whose = if by == index {
+        "its own".to_owned()
+    } else {
+        format!("the ancestor {:?}'s", label(&entities[by]))
+    };
+    let message = format!(
+        "the sphere {:?} is stretched by {whose} non-uniform scale ({x}, {y}, {z})",
+        label(sphere)
+    );
+    let hint = "scale it by one number, or use a mesh";
+    reader.error_hint(codes::STRETCHED_SPHERE, place, message, hint);
 }
 
 fn label<'e>(entity: &'e RawEntity<'_>) -> &'e str {

@@ -65,7 +65,7 @@ pub(super) enum ColorRole {
 impl<'a> Reader<'a> {
     /// A finite number within `domain`.
     pub(super) fn number(&self, node: Node<'a>, name: &str, domain: Domain) -> Option<f64> {
-        let Ok(x) = node.literal::<f64>() else {
+        let Some(x) = node.number() else {
             return self.wrong_type(node, name, "a number");
         };
         if !x.is_finite() {
@@ -132,8 +132,7 @@ impl<'a> Reader<'a> {
 
     /// A string.
     pub(super) fn string(&self, node: Node<'a>, name: &str) -> Option<String> {
-        node.literal()
-            .ok()
+        node.string()
             .or_else(|| self.wrong_type(node, name, "a string"))
     }
 

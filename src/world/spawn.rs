@@ -396,3 +396,31 @@ fn out_of_reach(desc: &SceneDesc, world: &World, entities: &[(usize, Entity)]) -
     });
     told.collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene;
+    use std::path::Path;
+
+    #[test]
+    fn the_first_of_several_cameras_is_taken() {
+        let text = "(version: 1, entities: [(gltf: \"a.glb\")])";
+        let (desc, _) = scene::parse(text, Path::new("scene.ron")).expect("the scene reads");
+        let mut world = World::new();
+        let nodes = [30.0, 50.0].map(|vfov_deg| (world.spawn(()), vfov_deg));
+        let told = |found: Option<Diagnostic>| found.map(|d| (d.severity, d.code));
+        let found = take_camera(&desc, &mut world, &nodes);
+        let more = (Severity::Warning, codes::MORE_CAMERAS);
+        assert_eq!(told(found), Some(more));
+        let taken: Vec<f64> = world
+            .query::<&Camera>()
+            .iter()
+            .map(|c| c.vfov_deg)
+            .collect();
+        assert_eq!(taken, [30.0]);
+        assert_eq!(take_camera(&desc, &mut world, &nodes[..1]), None);
+        let none = (Severity::Error, codes::NO_CAMERA);
+        assert_eq!(told(take_camera(&desc, &mut world, &[])), Some(none));
+    }
+}
