@@ -1,6 +1,8 @@
 //! `luxel check`: its codes, its answers to people and programs, and that everything is said at once and soon.
 
+use luxel::asset::Loader;
 use luxel::check::all_codes;
+use luxel::math::DVec3;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -394,6 +396,65 @@ fn files_that_do_not_fit_the_scene() {
         assert!(codes(&json).contains(&code), "{name}: {json:#}");
         assert_eq!(exit, if code.starts_with('E') { 65 } else { 0 }, "{name}");
     }
+}
+
+/// Each mesh of the given data before a camera that fits: nothing is said of the scene as a whole.
+#[test]
+fn plain_files_give_no_false_alarm() {
+    /// Files that do have triangles without texture coordinates under a texture.
+    const PARTLY: &[&str] = &[];
+    let Some(data) = std::env::var_os("LUXEL_DATA").map(PathBuf::from) else {
+        println!("skipped: LUXEL_DATA does not say where the data is");
+        return;
+    };
+    let mut checked = 0;
+    for path in meshes(&data.join("zoo/obj")) {
+        let mut loader = Loader::new();
+        let Ok(id) = loader.mesh(&path) else {
+            continue;
+        };
+        let mesh = loader.loaded(id);
+        let used = mesh.corners.iter().map(|c| mesh.positions[*c as usize]);
+        let (min, max) = used.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), p| {
+            (a.min(p), b.max(p))
+        });
+        let (center, size) = (0.5 * (min + max), (max - min).length());
+        let eye = center + DVec3::new(0.3, 0.4, 1.2) * size;
+        let text = format!(
+            "(version: 1, camera: (at: ({:?}, {:?}, {:?}), look_at: ({:?}, {:?}, {:?})),
+             background: Linear(1, 1, 1), entities: [(shape: Mesh({:?}))])",
+            eye.x,
+            eye.y,
+            eye.z,
+            center.x,
+            center.y,
+            center.z,
+            path.display().to_string()
+        );
+        let (desc, _) = luxel::scene::parse(&text, &data.join("s.ron")).expect("the scene reads");
+        let spawned = luxel::world::spawn(&desc, Loader::new()).expect("the file loads");
+        let found = luxel::check::check_world(&desc, &spawned.world, &spawned.assets);
+        let is_known = |code| code == "W309" && PARTLY.iter().any(|name| path.ends_with(name));
+        let found: Vec<_> = found.iter().filter(|d| !is_known(d.code)).collect();
+        assert!(found.is_empty(), "{}: {found:#?}", path.display());
+        checked += 1;
+    }
+    assert!(checked > 60, "{checked}");
+}
+
+/// OBJ files below a folder.
+fn meshes(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).expect("a folder").flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            found.extend(meshes(&path));
+        } else if path.extension().is_some_and(|e| e == "obj") {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
 }
 
 /// Release only: what these bounds tell apart is a second and more than a minute.

@@ -62,6 +62,8 @@ pub fn check_world(desc: &SceneDesc, world: &World, store: &AssetStore) -> Vec<D
     let mut found = inside::camera_inside(&posed);
     found.extend(view::view(&posed));
     found.extend(scale::blurred_place(&posed));
+    found.extend(scale::out_of_range(&posed));
+    found.extend(scale::collapsed(&posed));
     found.extend(scale::other_units(&posed));
     found.extend(light::units(&posed));
     found.extend(uvs::partly_textured(&posed));

@@ -1,17 +1,27 @@
 //! Sizes: shapes that single precision blurs, and meshes whose file is in other units than the scene.
 
+use super::bounds::Bounds;
 use super::codes;
 use super::inside::winding_at;
 use super::posed::{Form, Item, Posed};
 use super::view::may_be_seen;
 use super::words::short;
+use crate::asset::{Mesh, MeshId};
 use crate::diag::Diagnostic;
+use crate::math::DVec3;
+use std::collections::BTreeMap;
 
 /// Half a step of single precision, relative to the coordinate.
 const HALF_STEP: f64 = 1.0 / (1 << 24) as f64;
 
 /// Shapes keep at least this share of their size; beyond it, facets and seams show.
 const MAX_ERROR: f64 = 1e-3;
+
+/// Largest coordinate of single precision, with room for what is computed from it, over the width of the rest.
+const RANGE: f64 = 1e37;
+
+/// One in so many triangles: fewer are slivers, as scans have them.
+const MIN_COLLAPSED: usize = 100;
 
 /// So many times larger or smaller than the rest is another unit: millimetres among metres.
 const UNIT_RATIO: f64 = 1000.0;
@@ -58,16 +68,77 @@ pub(super) fn blurred_place(posed: &Posed) -> Option<Diagnostic> {
     Some(warning.hint(hint))
 }
 
+/// A shape beyond the range of single precision, which begins where the rest of the scene is 1 wide.
+pub(super) fn out_of_range(posed: &Posed) -> Option<Diagnostic> {
+    let middle = posed.extent.center() + posed.view.eye;
+    let extent = posed.extent.longest();
+    let beyond = |item: &&Item| extent > 0.0 && item.bounds.reach(middle) / extent > RANGE;
+    let item = posed.items.iter().find(beyond)?;
+    let says = format!(
+        "{} reaches {:.1e} times as far as the rest of the scene is wide: single precision ends at 3e38",
+        posed.label(item),
+        item.bounds.reach(middle) / extent
+    );
+    let warning = posed.warn(item.entity(), item.component(), codes::BLURRED_PLACE, says);
+    Some(warning.hint(
+        "make it smaller or bring it nearer: a wall needs no more than a million times the rest",
+    ))
+}
+
+/// Meshes of which many triangles are smaller than a step of single precision over the whole mesh.
+pub(super) fn collapsed(posed: &Posed) -> Vec<Diagnostic> {
+    let mut known: BTreeMap<MeshId, Option<(usize, usize)>> = BTreeMap::new();
+    let mut found = Vec::new();
+    for item in &posed.items {
+        let (Form::Mesh(id), Some(mesh)) = (item.form, posed.mesh(item)) else {
+            continue;
+        };
+        let count = *known.entry(id).or_insert_with(|| {
+            let step = item.local.longest() * HALF_STEP;
+            let (triangles, _) = mesh.corners.as_chunks::<3>();
+            let lost = triangles.iter().filter(|t| is_below(mesh, t, step)).count();
+            (lost * MIN_COLLAPSED > triangles.len()).then_some((lost, triangles.len()))
+        });
+        let Some((lost, all)) = count else {
+            continue;
+        };
+        // Told at the first entity that brings the mesh.
+        known.insert(id, None);
+        let says = format!(
+            "{lost} of the {all} triangles of {} are smaller than a step of single precision over its {}: they are \
+             points",
+            posed.label(item),
+            short(item.local.longest())
+        );
+        let hint =
+            "does one vertex lie far from the rest by mistake? Otherwise cut the mesh into files";
+        let warning = posed.warn(item.entity(), item.component(), codes::BLURRED_PLACE, says);
+        found.push(warning.hint(hint));
+    }
+    found
+}
+
+/// Whether the longest side of a triangle's box is below a step.
+fn is_below(mesh: &Mesh, triangle: &[u32; 3], step: f64) -> bool {
+    let corners = triangle
+        .iter()
+        .filter_map(|c| mesh.positions.get(*c as usize));
+    corners
+        .fold(Bounds::EMPTY, |bounds, p| bounds.with(*p))
+        .longest()
+        < step
+}
+
 /// What is farthest from the middle of all shapes: mostly what makes the scene so wide.
 fn farthest(posed: &Posed) -> String {
     let inner: Vec<&Item> = posed.items.iter().filter(|item| !item.wall).collect();
-    let mut middles = [0, 1, 2].map(|axis| {
+    let middles = [0, 1, 2].map(|axis| {
         let mut all: Vec<f64> = inner.iter().map(|i| i.bounds.center()[axis]).collect();
         all.push(posed.view.eye[axis]);
         all.sort_by(f64::total_cmp);
         all[all.len() / 2]
     });
-    let middle = crate::math::DVec3::from_array(std::mem::take(&mut middles));
+    let middle = DVec3::from_array(middles);
     let camera = (posed.view.eye - middle).length();
     let distance = |item: &Item| (item.bounds.center() - middle).length();
     let last = inner

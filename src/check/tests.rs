@@ -264,6 +264,44 @@ fn single_precision_blurs_what_is_far() {
 }
 
 #[test]
+fn single_precision_has_an_end() {
+    let wall = |radius: f64| {
+        format!(
+            "{CAMERA} {LIT} entities: [(shape: Mesh(\"cube.obj\")), (name: \"wall\",
+             shape: Sphere(radius: {radius}), transform: (translate: (0, {}, 0)))]",
+            -radius - 2.0
+        )
+    };
+    let said = expect("wall", &wall(1e60), &["W304"]);
+    assert!(said.contains("\"wall\" reaches"), "{said}");
+    expect("floor", &wall(1e9), &[]);
+}
+
+#[test]
+fn a_stray_vertex_makes_points_of_triangles() {
+    let stray = |x: f64| {
+        let text = format!("{}v {x} 0 0\nf 1 2 9\n", cube(|x| x));
+        let folder = Folder::of(&format!("stray{x}"), &[("stray.obj", text)]);
+        let text = format!(
+            "(version: 1, camera: (at: (0, 0, {}), look_at: ({x}, 0, 0), vfov_deg: 120), {LIT}
+             entities: [(shape: Mesh(\"stray.obj\")), (shape: Mesh(\"stray.obj\"))])",
+            3.0 * x
+        );
+        let (desc, _) = scene::parse(&text, &folder.0.join("s.ron")).expect("the scene reads");
+        let spawned = spawn(&desc, Loader::new()).expect("the files load");
+        check_world(&desc, &spawned.world, &spawned.assets)
+    };
+    let found = stray(1e9);
+    assert_eq!(codes_of(&found), ["W304"], "{found:#?}");
+    assert!(
+        found[0].message.starts_with("12 of the 13 triangles"),
+        "{}",
+        found[0]
+    );
+    assert_eq!(stray(1e5), []);
+}
+
+#[test]
 fn files_in_other_units() {
     let body = |file: &str, transform: &str| {
         format!(

@@ -57,7 +57,10 @@ impl Contents {
         let mesh = &store.meshes[mesh];
         self.triangles += mesh.triangle_count();
         for corner in &mesh.corners {
-            let p = to_world.transform_point3(mesh.positions[*corner as usize]);
+            let Some(p) = mesh.positions.get(*corner as usize) else {
+                continue;
+            };
+            let p = to_world.transform_point3(*p);
             let (min, max) = self.bounds.unwrap_or((p, p));
             self.bounds = Some((min.min(p), max.max(p)));
         }
