@@ -23,7 +23,7 @@
 //! | [`film`] | sums | statistics, tone mapping, writers | scenes |
 //! | [`render`] | world, settings | drives build → trace → film over tiles and frames | |
 //! | [`measure`] | an image and its reference | error statistics, FLIP, heat maps | what error is too much |
-//! | [`check`] | a `SceneDesc` | every diagnostic at once | pixels |
+//! | [`check`] | a `SceneDesc`, its world and store | warnings of what is probably not meant, all at once | pixels |
 //! | [`diag`] | | **data only**: a diagnostic | everything else |
 //! | [`math`] | | vectors, boxes, lanes, functions with fixed bits | everything else |
 //!

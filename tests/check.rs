@@ -401,8 +401,6 @@ fn files_that_do_not_fit_the_scene() {
 /// Each mesh of the given data before a camera that fits: nothing is said of the scene as a whole.
 #[test]
 fn plain_files_give_no_false_alarm() {
-    /// Files that do have triangles without texture coordinates under a texture.
-    const PARTLY: &[&str] = &[];
     let Some(data) = std::env::var_os("LUXEL_DATA").map(PathBuf::from) else {
         println!("skipped: LUXEL_DATA does not say where the data is");
         return;
@@ -434,12 +432,10 @@ fn plain_files_give_no_false_alarm() {
         let (desc, _) = luxel::scene::parse(&text, &data.join("s.ron")).expect("the scene reads");
         let spawned = luxel::world::spawn(&desc, Loader::new()).expect("the file loads");
         let found = luxel::check::check_world(&desc, &spawned.world, &spawned.assets);
-        let is_known = |code| code == "W309" && PARTLY.iter().any(|name| path.ends_with(name));
-        let found: Vec<_> = found.iter().filter(|d| !is_known(d.code)).collect();
         assert!(found.is_empty(), "{}: {found:#?}", path.display());
         checked += 1;
     }
-    assert!(checked > 60, "{checked}");
+    assert!(checked >= 50, "{checked}");
 }
 
 /// OBJ files below a folder.

@@ -26,6 +26,7 @@ pub(super) fn camera_inside(posed: &Posed) -> Vec<Diagnostic> {
         .items
         .iter()
         .filter(|item| item.bounds.contains(posed.view.eye))
+        .take(MAX_TOLD)
         .collect();
     let inside = |item: &&&Item| match item.form {
         Form::Sphere { radius, .. } => {
@@ -33,12 +34,7 @@ pub(super) fn camera_inside(posed: &Posed) -> Vec<Diagnostic> {
         }
         Form::Mesh(_) => winding_at(posed, item, posed.view.eye) > INSIDE,
     };
-    let around: Vec<&Item> = around
-        .iter()
-        .filter(inside)
-        .take(MAX_TOLD)
-        .copied()
-        .collect();
+    let around: Vec<&Item> = around.iter().filter(inside).copied().collect();
     around
         .iter()
         .filter_map(|item| verdict(posed, item, &around))

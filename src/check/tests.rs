@@ -513,3 +513,65 @@ fn a_gltf_file_that_brings_nothing() {
     let intensity = [300.0; 3];
     assert_eq!(found(Some(Light::Point { intensity })), Vec::<&str>::new());
 }
+
+#[test]
+fn extremes_neither_panic_nor_show_what_is_no_number() {
+    const ANY: &[&str] = &[
+        "0", "1", "-1", "1e-150", "-3.5", "100", "1e9", "-1e60", "1e149",
+    ];
+    const POSITIVE: &[&str] = &[
+        "1", "0.01", "1e-150", "1e-30", "100", "1e9", "1e60", "1e149",
+    ];
+    const POWER: &[&str] = &["0", "1", "1e9", "1e-30"];
+    const VFOV: &[&str] = &["0.001", "1", "60", "179.9"];
+    let files = [("cube.obj", cube(|x| x)), ("huge.obj", cube(|x| 1e90 * x))];
+    let folder = Folder::of("extremes", &files);
+    let mut state = 7_u64;
+    let mut pick = |of: &[&'static str]| {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        of[(state >> 33) as usize % of.len()]
+    };
+    let (mut checked, mut said) = (0, 0);
+    for _ in 0..200 {
+        let mut three = |of| format!("({}, {}, {})", pick(of), pick(of), pick(of));
+        let (eye, aim, cube_at, turn) = (three(ANY), three(ANY), three(ANY), three(ANY));
+        let stretch = three(POSITIVE);
+        let spheres: Vec<[String; 3]> = (0..3)
+            .map(|_| [three(ANY), three(ANY), three(POWER)])
+            .collect();
+        let lens = format!(
+            "aperture_radius: {}, focus_distance: {}",
+            pick(POSITIVE),
+            pick(POSITIVE)
+        );
+        let mut text = format!(
+            "(version: 1, camera: (at: {eye}, look_at: {aim}, vfov_deg: {}, lens: ({lens})), entities: [
+             (shape: Mesh(\"cube.obj\"), transform: (translate: {cube_at}, scale: {})),
+             (shape: Mesh(\"huge.obj\"), transform: (rotate: Euler{turn}, scale: {stretch})),",
+            pick(VFOV),
+            pick(POSITIVE)
+        );
+        for [at, place, power] in spheres {
+            text += &format!(
+                "(shape: Sphere(radius: {}), transform: (translate: {at})),
+                 (light: Point(intensity: {power}), transform: (translate: {place})),",
+                pick(POSITIVE)
+            );
+        }
+        let Ok((desc, _)) = scene::parse(&(text + "])"), &folder.0.join("s.ron")) else {
+            continue;
+        };
+        let Ok(spawned) = spawn(&desc, Loader::new()) else {
+            continue;
+        };
+        checked += 1;
+        let loaded = check_world(&desc, &spawned.world, &spawned.assets);
+        for one in check(&desc).into_iter().chain(loaded) {
+            said += 1;
+            assert!(!one.to_string().contains("NaN"), "{one}\n{}", desc.source);
+        }
+    }
+    assert!(checked > 50 && said > 50, "{checked} scenes, {said} said");
+}

@@ -2,25 +2,26 @@
 //! world is spawned.
 
 use super::codes;
-use super::posed::{Item, Posed};
+use super::posed::{Form, Item, Posed};
 use crate::asset::{Mesh, MeshMaterial};
 use crate::diag::Diagnostic;
 use crate::world::{Color, codes as world_codes};
+use std::collections::BTreeSet;
 
-/// A mesh that is textured in places only, once for each entity that brings it.
+/// Meshes that are textured in places only, each at the first entity that brings it.
 pub(super) fn partly_textured(posed: &Posed) -> Vec<Diagnostic> {
-    let mut told: Vec<(usize, *const Mesh)> = Vec::new();
+    let mut seen = BTreeSet::new();
     let mut found = Vec::new();
     for item in &posed.items {
-        let Some(mesh) = posed.mesh(item) else {
+        let (Form::Mesh(id), Some(mesh)) = (item.form, posed.mesh(item)) else {
             continue;
         };
-        let key = (item.entity(), std::ptr::from_ref(mesh));
-        if told.last() == Some(&key) {
-            continue;
+        let by_scene = item
+            .material
+            .map(|m| matches!(m.color, Color::Texture { .. }));
+        if seen.insert((id, by_scene)) {
+            found.extend(partly(posed, item, mesh, by_scene));
         }
-        told.push(key);
-        found.extend(partly(posed, item, mesh));
     }
     found
 }
@@ -43,10 +44,8 @@ pub fn check_mesh(mesh: &Mesh) -> Option<Diagnostic> {
 /// What to do about it.
 const HINT: &str = "give these faces texture coordinates, or a material of one colour";
 
-fn partly(posed: &Posed, item: &Item, mesh: &Mesh) -> Option<Diagnostic> {
-    let by_scene = item
-        .material
-        .map(|m| matches!(m.color, Color::Texture { .. }));
+/// `by_scene` is whether the scene's own material is textured, where there is one.
+fn partly(posed: &Posed, item: &Item, mesh: &Mesh, by_scene: Option<bool>) -> Option<Diagnostic> {
     let some = mesh.uvs.iter().any(|uv| uv.is_some()) || mesh.uvs1.iter().any(|uv| uv.is_some());
     let count = Count::of(mesh, by_scene).filter(|_| some)?;
     let component = match by_scene {

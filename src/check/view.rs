@@ -206,10 +206,9 @@ fn blurred(posed: &Posed, seen: &[&Item]) -> Option<Diagnostic> {
         let depths = corners(view, item).map(|p| p.z);
         let nearest = depths.iter().copied().fold(f64::INFINITY, f64::min);
         let farthest = depths.iter().copied().fold(0.0, f64::max);
-        let sharpest = focus.clamp(
-            nearest.max(f64::MIN_POSITIVE),
-            farthest.max(f64::MIN_POSITIVE),
-        );
+        let sharpest = focus
+            .max(nearest.max(f64::MIN_POSITIVE))
+            .min(farthest.max(f64::MIN_POSITIVE));
         least = least.min(2.0 * aperture * (1.0 / sharpest - 1.0 / focus).abs());
         (near, far) = (near.min(nearest), far.max(farthest));
     }
