@@ -328,7 +328,7 @@ error[E128]: no such node: 7
             .at(&source, 1500, 1)
             .hint("yes");
         let wanted = "error[E012]: no\n--> a.ron:1:1501\n = help: yes\n";
-        assert_eq!(render(&[one.clone()], Style::Plain), wanted);
+        assert_eq!(render(std::slice::from_ref(&one), Style::Plain), wanted);
         assert!(json(&[one])["diagnostics"][0]["text"].is_null());
     }
 
