@@ -51,7 +51,8 @@ impl Images {
 
 /// The encoded bytes of an image.
 struct Encoded {
-    image: usize,
+    /// Indices in the glTF file: it may list one file more than once.
+    images: Vec<usize>,
     /// The file, if it is one of its own.
     file: Option<PathBuf>,
     bytes: Vec<u8>,
@@ -71,28 +72,19 @@ pub(super) fn read(
     let mut errors = Vec::new();
     let mut encoded = Vec::new();
     for &image in wanted.colors.union(&wanted.gloss) {
-        let color_only = !wanted.gloss.contains(&image);
-        match locate(loader, source, image, color_only, notes) {
-            Ok(Located::Known(texture)) => drop(images.colors.insert(image, texture)),
-            Ok(Located::Encoded(found)) => encoded.push(found),
-            Ok(Located::Missing) => {}
+        match locate(loader, source, image, &mut encoded, notes) {
+            Ok(Some(known)) => images.keep(wanted, image, loader.loaded_texture(known), known),
+            Ok(None) => {}
             Err(error) => errors.push(error),
         }
     }
-    let decode = |one: &Encoded| texture::decode(one.name(&source.path), &one.bytes);
+    let name = |one: &Encoded| one.file.clone().unwrap_or_else(|| source.path.clone());
+    let decode = |one: &Encoded| texture::decode(&name(one), &one.bytes);
     let decoded: Vec<_> = encoded.par_iter().map(decode).collect();
-    for (one, decoded) in encoded.into_iter().zip(decoded) {
+    for (one, decoded) in encoded.iter().zip(decoded) {
         match decoded {
-            Ok(texture) => {
-                if wanted.gloss.contains(&one.image) {
-                    images.gloss.insert(one.image, mean(&texture));
-                }
-                if wanted.colors.contains(&one.image) {
-                    let id = loader.keep_texture(texture, one.file.as_deref());
-                    images.colors.insert(one.image, id);
-                }
-            }
-            Err(error) => errors.push(at_image(error, source, &one)),
+            Ok(texture) => images.keep_new(loader, wanted, one, texture),
+            Err(error) => errors.push(at_image(error, source, one)),
         }
     }
     if errors.is_empty() {
@@ -102,47 +94,63 @@ pub(super) fn read(
     }
 }
 
-impl Encoded {
-    /// What the texture is said to come from.
-    fn name<'a>(&'a self, source: &'a Path) -> &'a Path {
-        self.file.as_deref().unwrap_or(source)
+impl Images {
+    /// Notes what is wanted of an image that is in the store.
+    fn keep(&mut self, wanted: &Wanted, image: usize, texture: &Texture, id: TextureId) {
+        if wanted.colors.contains(&image) {
+            self.colors.insert(image, id);
+        }
+        if wanted.gloss.contains(&image) {
+            self.gloss.insert(image, mean(texture));
+        }
+    }
+
+    /// Notes what is wanted of a decoded image, and stores it unless its means are all.
+    fn keep_new(&mut self, loader: &mut Loader, wanted: &Wanted, of: &Encoded, texture: Texture) {
+        if !of.images.iter().any(|image| wanted.colors.contains(image)) {
+            let mean = mean(&texture);
+            self.gloss
+                .extend(of.images.iter().map(|&image| (image, mean)));
+            return;
+        }
+        let id = loader.keep_texture(texture, of.file.as_deref());
+        for &image in &of.images {
+            self.keep(wanted, image, loader.loaded_texture(id), id);
+        }
     }
 }
 
-/// Where an image is.
-enum Located {
-    /// A file that was read before.
-    Known(TextureId),
-    /// Its bytes.
-    Encoded(Encoded),
-    /// Nowhere, which was said.
-    Missing,
-}
-
+/// Finds an image: in the store, or else its bytes, which join `encoded`. A missing file is said, and gives neither.
 fn locate(
     loader: &mut Loader,
     source: &mut Source,
     image: usize,
-    color_only: bool,
+    encoded: &mut Vec<Encoded>,
     notes: &mut Notes,
-) -> Result<Located, Diagnostic> {
+) -> Result<Option<TextureId>, Diagnostic> {
     let file = match source.image(loader, image)? {
         Image::Embedded(bytes) => {
-            return Ok(Located::Encoded(Encoded {
-                image,
+            encoded.push(Encoded {
+                images: vec![image],
                 file: None,
                 bytes: bytes.into_owned(),
-            }));
+            });
+            return Ok(None);
         }
         Image::File(file) => file,
     };
-    if let Some(Ok(texture)) = loader.known_texture(&file).filter(|_| color_only) {
-        return Ok(Located::Known(texture));
+    if let Some(Ok(texture)) = loader.known_texture(&file) {
+        return Ok(Some(texture));
+    }
+    let same = |one: &&mut Encoded| one.file.as_ref() == Some(&file);
+    if let Some(same) = encoded.iter_mut().find(same) {
+        same.images.push(image);
+        return Ok(None);
     }
     let pointer = format!("/images/{image}/uri");
     if !file.is_file() {
         notes.tell(missing(&file).pointer(pointer));
-        return Ok(Located::Missing);
+        return Ok(None);
     }
     let bytes = loader.read(&file).map_err(|error| {
         let message = format!("{}: {}", file.display(), error.message);
@@ -150,11 +158,12 @@ fn locate(
             .in_file(&source.path)
             .pointer(pointer)
     })?;
-    Ok(Located::Encoded(Encoded {
-        image,
+    encoded.push(Encoded {
+        images: vec![image],
         file: Some(file),
         bytes,
-    }))
+    });
+    Ok(None)
 }
 
 fn missing(file: &Path) -> Diagnostic {
@@ -171,7 +180,7 @@ fn missing(file: &Path) -> Diagnostic {
 
 /// An error of decoding, at the place in the glTF file.
 fn at_image(error: Diagnostic, source: &Source, of: &Encoded) -> Diagnostic {
-    let image = of.image;
+    let image = of.images.first().copied().unwrap_or_default();
     let (message, pointer) = match &of.file {
         Some(file) => {
             let message = format!("{}: {}", file.display(), error.message);

@@ -2,7 +2,8 @@
 //!
 //! Enter: a material as a primitive uses it, and decoded images. Leaves: colour, emission, opacity and the nearest
 //! scattering that luxel has (the table of `gloss`). Deliberately absent: normal textures, which are said; occlusion
-//! textures, since a path tracer computes occlusion; `doubleSided`, since every surface has two sides here.
+//! textures, since a path tracer computes occlusion; `doubleSided`, since every surface has two sides here (emission shines
+//! from the front alone).
 
 use super::exact::{exact, exact_one};
 use super::gloss::{Approximated, DEFAULT_IOR, Surface};
@@ -40,12 +41,6 @@ const UNLIT_COLORS: Topic = Topic {
     code: codes::GLTF_NOT_MODELLED,
     says: "unlit materials have vertex colours, which do not shine",
     hint: "bake the colours into a texture",
-};
-
-const VERTEX_ALPHA: Topic = Topic {
-    code: codes::GLTF_NOT_MODELLED,
-    says: "materials that are not opaque are used with vertex colours, whose alpha is not modelled",
-    hint: "bake the alpha into the base colour texture",
 };
 
 const WITHOUT_UV: Topic = Topic {
@@ -158,7 +153,7 @@ impl Maker<'_> {
         let (factor, surface) = self.surface(&file, &place);
         let (color, texture) = self.textured(color_factor(factor), color_info, &place, look);
         let opacity = self.opacity(&file, factor[3], texture, &place);
-        self.say(&file, look, &opacity, &place);
+        self.say(&file, look, &place);
         let mut material = MeshMaterial {
             texture,
             vertex_colors: look.colors,
@@ -286,10 +281,7 @@ impl Maker<'_> {
     }
 
     /// What this material asks for and does not get.
-    fn say(&mut self, file: &Material<'_>, look: &Look, opacity: &Opacity, place: &str) {
-        if opacity.mode != AlphaMode::Opaque && look.colors {
-            self.notes.add(&VERTEX_ALPHA, place);
-        }
+    fn say(&mut self, file: &Material<'_>, look: &Look, place: &str) {
         if file.unlit() {
             self.notes.add(&UNLIT, place);
             if look.colors {

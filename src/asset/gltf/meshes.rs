@@ -42,6 +42,12 @@ const BAD_NORMAL: Topic = Topic {
     hint: "export the normals again, or say `normals: Flat` or `Smooth`",
 };
 
+const VERTEX_ALPHA: Topic = Topic {
+    code: codes::GLTF_NOT_MODELLED,
+    says: "primitives have vertex colours whose alpha is below 1, which is not modelled",
+    hint: "bake the alpha into the base colour texture",
+};
+
 /// A mesh, but for its materials.
 pub(super) struct Shaped {
     pub(super) mesh: Mesh,
@@ -164,6 +170,13 @@ impl<'a> Builder<'a> {
 
     fn append(&mut self, part: &Part<'_>) -> Result<(), Diagnostic> {
         let streams = self.streams(part)?;
+        let veiled = streams
+            .colors
+            .as_ref()
+            .is_some_and(|colors| has_alpha(colors));
+        if veiled && part.material.alpha_mode() != gltf::material::AlphaMode::Opaque {
+            self.shaped.notes.add(&VERTEX_ALPHA, &part.place);
+        }
         let order = part.indices.map(|accessor| self.source.indices(accessor));
         let order = order.transpose()?;
         let vertices = streams.positions.components.len() / 3;
@@ -304,8 +317,7 @@ impl<'a> Builder<'a> {
             for vertex in vertices {
                 let read = streams.colors.as_ref().and_then(|colors| colors.at(vertex));
                 let color: [f64; 3] = read.unwrap_or([1.0; 3]);
-                // `max` first: it turns what is no number into 0.
-                mesh.colors.push(color.map(|c| c.max(0.0).min(1.0) as f32));
+                mesh.colors.push(color.map(share));
             }
         }
     }
@@ -315,6 +327,21 @@ fn too_large(part: &Part<'_>) -> Diagnostic {
     Diagnostic::error(codes::TOO_LARGE, "a mesh of more than 2^32 vertices")
         .pointer(&part.place)
         .hint("split it")
+}
+
+/// A component of a colour, brought between 0 and 1; 0 for what is no number.
+fn share(component: f64) -> f32 {
+    if component > 0.0 {
+        component.min(1.0) as f32
+    } else {
+        0.0
+    }
+}
+
+/// Whether colours have an alpha below 1.
+fn has_alpha(colors: &Elements) -> bool {
+    let mut alphas = colors.components.iter().skip(3).step_by(4);
+    colors.width == 4 && alphas.any(|alpha| *alpha < 1.0)
 }
 
 /// The position of a vertex.

@@ -208,6 +208,44 @@ fn a_missing_image_is_a_warning_and_a_damaged_one_an_error() {
 }
 
 #[test]
+fn an_image_that_is_listed_twice_is_one_texture() {
+    let mut draft = with_uvs();
+    draft.root["images"] = json!([{ "uri": "a.png" }, { "uri": "./a.png" }]);
+    draft.root["textures"] = json!([{ "source": 0 }, { "source": 1 }]);
+    draft.beside = vec![("a.png", png(1, 1, &[255, 255, 0]))];
+    draft.material(json!({
+        "pbrMetallicRoughness": {
+            "metallicFactor": 0,
+            "baseColorTexture": { "index": 0 },
+            "metallicRoughnessTexture": { "index": 0 },
+        },
+        "emissiveTexture": { "index": 1 },
+        "emissiveFactor": [1, 1, 1],
+    }));
+    let read = draft.clean();
+    assert_eq!(read.store.textures.len(), 1);
+    let material = &read.mesh().materials[0];
+    assert_eq!(material.texture, material.emission_texture);
+}
+
+#[test]
+fn vertex_alpha_is_said_where_it_would_show() {
+    for (mode, alpha, codes) in [
+        ("BLEND", 0.5, vec!["W141"]),
+        ("BLEND", 1.0, vec![]),
+        ("OPAQUE", 0.5, vec![]),
+    ] {
+        let mut draft = Draft::triangle();
+        let colors = draft.floats(&[[1.0, 1.0, 1.0, alpha]; 3]);
+        draft.attribute("COLOR_0", colors);
+        draft.material(json!({
+            "pbrMetallicRoughness": { "metallicFactor": 0 }, "alphaMode": mode,
+        }));
+        assert_eq!(draft.read().expect("a model").codes(), codes);
+    }
+}
+
+#[test]
 fn what_nothing_uses_is_not_needed() {
     let mut draft = Draft::triangle();
     draft.root["images"] = json!([{ "uri": "nowhere.png" }]);
