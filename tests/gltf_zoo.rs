@@ -319,11 +319,12 @@ fn box_textured_is_as_its_screenshot_shows_it() {
         let (ab, ac) = (b.0 - a.0, c.0 - a.0);
         let (uv_ab, uv_ac) = (b.1 - a.1, c.1 - a.1);
         let normal = ab.cross(ac);
-        // The file itself mirrors its image, on every side but the bottom: in its screenshot the moon is left of the
-        // middle, and in the image right of it.
+        let is_side = normal.y.abs() < 1e-9;
+        // The file itself mirrors its image on the four sides: in its screenshot the moon is left of the middle, and in
+        // the image right of it.
         let mirrored = uv_ab.perp_dot(uv_ac) < 0.0;
-        assert_eq!(mirrored, normal.y > -1e-9, "{normal}");
-        if normal.y.abs() < 1e-9 {
+        assert_eq!(mirrored, is_side, "{normal}");
+        if is_side {
             // Upright: v is the height.
             assert_eq!([uv_ab.y, uv_ac.y], [ab.y, ac.y]);
             sides += 1;

@@ -4,6 +4,7 @@ use super::accessor::Elements;
 use super::source::Source;
 use crate::asset::codes;
 use crate::diag::Diagnostic;
+use crate::math::{DVec2, DVec3};
 use gltf::Semantic;
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -27,6 +28,16 @@ impl Attributes {
             uvs: [0, 1].map(|set| of(Semantic::TexCoords(set))),
             colors: of(Semantic::Colors(0)),
         })
+    }
+
+    /// Bytes of a [`Mesh`](crate::asset::Mesh) for each triangle that has these attributes and vertices of its own.
+    pub(super) fn bytes_per_triangle(&self) -> usize {
+        let corner = size_of::<u32>()
+            + size_of::<DVec3>()
+            + self.normals.map_or(0, |_| size_of::<Option<DVec3>>())
+            + self.uvs.iter().flatten().count() * size_of::<Option<DVec2>>()
+            + self.colors.map_or(0, |_| size_of::<[f32; 3]>());
+        3 * corner + size_of::<Option<u32>>()
     }
 }
 

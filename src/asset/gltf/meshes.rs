@@ -7,6 +7,7 @@
 
 use super::accessor::Elements;
 use super::attributes::{Attributes, Cache};
+use super::layout::{items, natural};
 use super::materials::{self, Look};
 use super::notes::{Notes, Topic};
 use super::source::Source;
@@ -84,6 +85,22 @@ pub(super) fn mesh(source: &Source, index: usize) -> Result<Shaped, Vec<Diagnost
     } else {
         Err(errors)
     }
+}
+
+/// Bytes that the triangles of a mesh will take at most, by the counts that its accessors claim.
+pub(super) fn bytes(source: &Source, index: usize) -> u64 {
+    let Some(mesh) = source.document.meshes().nth(index) else {
+        return 0;
+    };
+    let parts = parts(&mesh, &mut Notes::default());
+    let of_part = |part: &Part<'_>| {
+        let corners = part.indices.unwrap_or(part.attributes.positions);
+        let corners = items(&source.json, "accessors").get(corners);
+        let corners = corners.and_then(|accessor| natural(accessor.get("count")?));
+        let triangles = part.assembly.count(corners.unwrap_or_default()) as u64;
+        triangles.saturating_mul(part.attributes.bytes_per_triangle() as u64)
+    };
+    parts.iter().map(of_part).fold(0, u64::saturating_add)
 }
 
 fn parts<'a>(mesh: &gltf::Mesh<'a>, notes: &mut Notes) -> Vec<Part<'a>> {

@@ -287,6 +287,16 @@ fn a_normal_that_is_none_is_absent() {
 }
 
 #[test]
+fn a_small_file_that_asks_for_billions_of_triangles_is_refused() {
+    let mut draft = Draft::triangle();
+    draft.indices(&[0, 1, 2].repeat(1 << 14));
+    let primitive = draft.primitive().clone();
+    draft.root["meshes"][0]["primitives"] = vec![primitive; 4000].into();
+    let errors = draft.read().map(|_| ()).expect_err("an error");
+    assert_eq!(errors[0].code, "E109", "{errors:?}");
+}
+
+#[test]
 fn indices_and_vertices_that_cannot_be_used_are_errors_with_a_place() {
     let mut beyond = Draft::triangle();
     beyond.indices(&[0, 1, 3]);
