@@ -96,17 +96,18 @@ fn errors_of(verdict: &Value) -> Vec<&Value> {
     messages.into_iter().flatten().filter(is_error).collect()
 }
 
-/// Whether one of our findings stands at the place of an error, above or below it. Errors of the container and of the
+/// Whether something that we say stands at the place of an error, above or below it. Errors of the container and of the
 /// JSON text have no pointer: they are told by their code.
 fn names(found: &[Diagnostic], error: &Value) -> bool {
-    let findings = found.iter().filter(|one| is_finding(one.code));
     let place = error["pointer"].as_str().unwrap_or_default();
-    let mut at_place = findings.map(|one| match (place, one.pointer.as_deref()) {
-        ("", None) => matches!(one.code, "E120" | "E121" | "E122" | "W134"),
-        ("/", Some("")) => one.severity == Severity::Error,
-        (place, Some(pointer)) => below(place, pointer) || below(pointer, place),
-        _ => false,
-    });
+    let mut at_place = found
+        .iter()
+        .map(|one| match (place, one.pointer.as_deref()) {
+            ("", None) => matches!(one.code, "E120" | "E121" | "E122" | "W134"),
+            ("/", Some("")) => one.severity == Severity::Error,
+            (place, Some(pointer)) => below(place, pointer) || below(pointer, place),
+            _ => false,
+        });
     at_place.any(|is| is)
 }
 

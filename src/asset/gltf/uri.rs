@@ -82,6 +82,19 @@ fn local(document: &Path, uri: &str) -> PathBuf {
         .unwrap_or(meant)
 }
 
+/// The media type of a data URI, which is not decoded for it.
+pub(super) fn media_type(uri: &str) -> Option<String> {
+    scheme(uri).filter(|scheme| scheme.eq_ignore_ascii_case("data"))?;
+    let (head, _) = uri.get("data:".len()..)?.split_once(',')?;
+    Some(
+        head.split(';')
+            .next()
+            .unwrap_or("")
+            .trim()
+            .to_ascii_lowercase(),
+    )
+}
+
 /// The media type and bytes of a data URI (RFC 2397) after its `data:`.
 fn embedded(rest: &str) -> Result<Uri, BadUri> {
     let hint = "export the file again";
@@ -227,6 +240,11 @@ mod tests {
         assert_eq!(bytes("data:,a%20b"), b"a b");
         let media = resolve(Path::new(""), "data:Image/PNG;charset=x;base64,");
         assert_eq!(media, Ok(Uri::Embedded("image/png".into(), vec![])));
+        assert_eq!(
+            media_type("data:Image/PNG;base64,*"),
+            Some("image/png".into())
+        );
+        assert_eq!(media_type("data.bin"), None);
         assert!(resolve(Path::new(""), "data:nothing").is_err());
         assert!(resolve(Path::new(""), "data:;base64,&").is_err());
     }

@@ -6,7 +6,7 @@ use super::walk::is_of;
 use crate::asset::codes;
 use crate::asset::gltf::accessor::span;
 use crate::asset::gltf::layout::{Accessor, Component, Shape, items, natural};
-use crate::asset::gltf::uri::{self, Uri};
+use crate::asset::gltf::uri;
 use crate::asset::gltf::uses::index;
 use serde_json::Value;
 
@@ -33,22 +33,16 @@ pub(super) fn check(rules: &mut Rules) {
 
 /// The media type of an embedded buffer (section 3.6.1.1).
 fn buffer(rules: &mut Rules, i: usize) {
-    let text = rules
-        .json
-        .pointer(&format!("/buffers/{i}/uri"))
-        .and_then(Value::as_str);
-    let Some(text) = text.filter(|text| uri::scheme(text).is_some()) else {
-        return;
-    };
-    if let Ok(Uri::Embedded(media, _)) = uri::resolve("".as_ref(), text)
-        && !matches!(
-            media.as_str(),
-            "application/octet-stream" | "application/gltf-buffer"
-        )
-    {
-        let says =
-            format!("the media type of a buffer is {media:?}, not \"application/octet-stream\"");
-        rules.warn(codes::GLTF_ODD_BUFFER, format!("/buffers/{i}/uri"), says);
+    const BYTES: [&str; 2] = ["application/octet-stream", "application/gltf-buffer"];
+    let pointer = format!("/buffers/{i}/uri");
+    let text = rules.json.pointer(&pointer).and_then(Value::as_str);
+    let media = text.and_then(uri::media_type);
+    if let Some(media) = media.filter(|media| !BYTES.contains(&media.as_str())) {
+        let says = format!(
+            "the media type of a buffer is {media:?}, not {:?}",
+            BYTES[0]
+        );
+        rules.warn(codes::GLTF_ODD_BUFFER, pointer, says);
     }
 }
 

@@ -4,6 +4,7 @@
 //! headers are read.
 
 use super::Rules;
+use super::extensions::declared;
 use crate::asset::codes;
 use crate::asset::gltf::accessor::view_bytes;
 use crate::asset::gltf::buffers::Buffers;
@@ -82,11 +83,31 @@ fn content(rules: &mut Rules, i: usize, mime: Option<&str>, bytes: impl BufRead 
         let says = format!("the image is {is}, and is declared {says}");
         rules.warn(codes::GLTF_IMAGE, &pointer, says);
     }
-    let is_read = matches!(format, Some(ImageFormat::Png | ImageFormat::Jpeg));
-    if is_read
-        && !rules.uses.images.contains(&i)
-        && let Err(e) = reader.into_dimensions()
-    {
-        rules.warn(codes::GLTF_IMAGE, pointer, format!("damaged image: {e}"));
+    match format {
+        _ if rules.uses.images.contains(&i) => {}
+        Some(ImageFormat::Png | ImageFormat::Jpeg) => {
+            if let Err(e) = reader.into_dimensions() {
+                rules.warn(codes::GLTF_IMAGE, pointer, format!("damaged image: {e}"));
+            }
+        }
+        Some(other) if !has_extension(rules, other) => {
+            let says = format!(
+                "the image is {}, neither PNG nor JPEG",
+                other.to_mime_type()
+            );
+            rules.warn(codes::GLTF_IMAGE, pointer, says);
+        }
+        _ => {}
     }
+}
+
+/// Whether the file declares the extension that allows images of a format.
+fn has_extension(rules: &Rules, format: ImageFormat) -> bool {
+    let name = match format {
+        ImageFormat::WebP => "EXT_texture_webp",
+        ImageFormat::Avif => "EXT_texture_avif",
+        ImageFormat::Dds => "MSFT_texture_dds",
+        _ => return false,
+    };
+    declared(rules.json).contains(name)
 }

@@ -8,7 +8,7 @@ use crate::asset::gltf::accessor::Elements;
 use crate::asset::gltf::layout::items;
 use crate::asset::gltf::uses::index;
 use serde_json::Value;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// How far the length of a key's quaternion may be from 1.
 const UNIT: f64 = 5e-3;
@@ -44,8 +44,9 @@ pub(super) fn check(rules: &mut Rules, data: &mut Data) {
             rotations(rules, data, animation, channel, &pointer);
         }
     }
+    let joints = joint_counts(rules.json);
     for (m, mesh) in items(rules.json, "meshes").iter().enumerate() {
-        let joints = joint_count(rules.json, m);
+        let joints = joints.get(&m).copied();
         for (p, primitive) in items(mesh, "primitives").iter().enumerate() {
             let pointer = format!("/meshes/{m}/primitives/{p}/attributes");
             skinning(rules, data, primitive, joints, &pointer);
@@ -121,12 +122,18 @@ fn rotations(
     }
 }
 
-/// Joints of the smallest skin that a node puts on a mesh.
-fn joint_count(json: &Value, mesh: usize) -> Option<usize> {
-    let nodes = items(json, "nodes").iter();
-    let nodes = nodes.filter(|node| index(node, "mesh") == Some(mesh));
-    let skins = nodes.filter_map(|node| items(json, "skins").get(index(node, "skin")?));
-    skins.map(|skin| items(skin, "joints").len()).min()
+/// Joints of the smallest skin that a node puts on a mesh, by mesh.
+fn joint_counts(json: &Value) -> BTreeMap<usize, usize> {
+    let mut counts = BTreeMap::new();
+    for node in items(json, "nodes") {
+        let skin = index(node, "skin").and_then(|skin| items(json, "skins").get(skin));
+        if let (Some(mesh), Some(skin)) = (index(node, "mesh"), skin) {
+            let count = items(skin, "joints").len();
+            let least = counts.entry(mesh).or_insert(count);
+            *least = count.min(*least);
+        }
+    }
+    counts
 }
 
 /// Weights are not negative and sum to 1; joints are there, and each once for a vertex.

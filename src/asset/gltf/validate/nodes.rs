@@ -159,3 +159,28 @@ pub(super) fn ancestors(parents: &[Option<usize>], node: usize) -> Vec<usize> {
     }
     path
 }
+
+/// The root above each node; for one that hangs from a circle, some node of it.
+pub(super) fn roots(parents: &[Option<usize>]) -> Vec<usize> {
+    let mut roots: Vec<Option<usize>> = vec![None; parents.len()];
+    for start in 0..parents.len() {
+        let mut path = Vec::new();
+        let mut at = start;
+        let root = loop {
+            if let Some(known) = roots[at] {
+                break known;
+            }
+            // Taken back below; ends the climb where it meets itself.
+            roots[at] = Some(at);
+            path.push(at);
+            match parents[at] {
+                Some(parent) if parent < parents.len() => at = parent,
+                _ => break at,
+            }
+        };
+        for node in path {
+            roots[node] = Some(root);
+        }
+    }
+    roots.into_iter().flatten().collect()
+}

@@ -3,29 +3,55 @@
 use super::Rules;
 use super::formats::INVERSE_BIND_MATRICES;
 use super::meshes::of_node;
-use super::nodes::ancestors;
+use super::nodes::{ancestors, roots};
 use super::usages::{self, Purpose};
 use crate::asset::codes;
 use crate::asset::gltf::layout::{items, natural};
-use crate::asset::gltf::uses::{element, index};
+use crate::asset::gltf::uses::index;
 use serde_json::Value;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 pub(super) fn check(rules: &mut Rules, parents: &[Option<usize>]) {
-    for (i, skin) in items(rules.json, "skins").iter().enumerate() {
+    let roots = roots(parents);
+    let skins = items(rules.json, "skins");
+    for (i, skin) in skins.iter().enumerate() {
         let pointer = format!("/skins/{i}");
         matrices(rules, skin, &pointer);
         common_root(rules, skin, parents, &pointer);
     }
+    let joint_roots = |skin| {
+        joints(skin)
+            .filter_map(|joint| roots.get(joint).copied())
+            .collect()
+    };
+    let joint_roots: Vec<BTreeSet<usize>> = skins.iter().map(joint_roots).collect();
+    let scenes = items(rules.json, "scenes").iter();
+    let scene_roots = |scene| items(scene, "nodes").iter().filter_map(natural).collect();
+    let scene_roots: Vec<BTreeSet<usize>> = scenes.map(scene_roots).collect();
+    // Whether a scene has the joints of a skin, by both.
+    let mut complete = BTreeMap::new();
     for (i, node) in items(rules.json, "nodes").iter().enumerate() {
-        let skin = index(node, "skin").and_then(|skin| element(rules.json, "skins", skin));
-        if let (Some(skin), Some(mesh)) = (skin, of_node(rules.json, node)) {
-            let pointer = format!("/nodes/{i}");
-            if !items(mesh, "primitives").iter().any(has_joints) {
-                let says = "a skin on a mesh without JOINTS_0";
+        let Some(skin) = index(node, "skin").filter(|&skin| skin < skins.len()) else {
+            continue;
+        };
+        let Some(mesh) = of_node(rules.json, node) else {
+            continue;
+        };
+        let pointer = format!("/nodes/{i}");
+        if !items(mesh, "primitives").iter().any(has_joints) {
+            let says = "a skin on a mesh without JOINTS_0";
+            rules.warn(codes::GLTF_MOTION, &pointer, says);
+        }
+        for (s, scene) in scene_roots
+            .iter()
+            .enumerate()
+            .filter(|(_, all)| all.contains(&roots[i]))
+        {
+            let complete = complete.entry((skin, s));
+            if !*complete.or_insert_with(|| joint_roots[skin].is_subset(scene)) {
+                let says = format!("scene {s} has this skinned mesh without its joints");
                 rules.warn(codes::GLTF_MOTION, &pointer, says);
             }
-            same_scenes(rules, i, skin, parents, &pointer);
         }
     }
 }
@@ -65,53 +91,44 @@ fn matrices(rules: &mut Rules, skin: &Value, pointer: &str) {
     }
 }
 
-/// A node and its ancestors.
-fn line(parents: &[Option<usize>], node: usize) -> BTreeSet<usize> {
-    let mut line = BTreeSet::from([node]);
-    line.extend(ancestors(parents, node));
-    line
-}
-
 /// All joints hang below one node, and below `skeleton` where there is one.
 fn common_root(rules: &mut Rules, skin: &Value, parents: &[Option<usize>], pointer: &str) {
-    let mut common: Option<BTreeSet<usize>> = None;
-    for joint in joints(skin) {
-        let line = line(parents, joint);
-        common = Some(match common {
-            Some(common) => &common & &line,
-            None => line,
-        });
+    let mut all = joints(skin);
+    let Some(first) = all.next() else { return };
+    let line: Vec<usize> = std::iter::once(first)
+        .chain(ancestors(parents, first))
+        .collect();
+    // The place in the line above the first joint at which the line of another node joins it, if it does.
+    let mut joins: BTreeMap<usize, Option<usize>> = line
+        .iter()
+        .enumerate()
+        .map(|(k, &n)| (n, Some(k)))
+        .collect();
+    let mut lowest = Some(0);
+    for joint in all {
+        let mut path = Vec::new();
+        let mut at = Some(joint);
+        let place = loop {
+            let Some(node) = at else { break None };
+            if let Some(&place) = joins.get(&node) {
+                break place;
+            }
+            joins.insert(node, None);
+            path.push(node);
+            at = parents.get(node).copied().flatten();
+        };
+        joins.extend(path.into_iter().map(|node| (node, place)));
+        lowest = lowest.zip(place).map(|(a, b)| a.max(b));
     }
-    let Some(common) = common else { return };
-    if common.is_empty() {
+    if lowest.is_none() {
         let says = "the joints have no common root";
         rules.warn(codes::GLTF_MOTION, format!("{pointer}/joints"), says);
     }
-    if let Some(skeleton) = index(skin, "skeleton")
+    let common = lowest.map_or(&[][..], |lowest| &line[lowest..]);
+    if let Some(skeleton) = index(skin, "skeleton").filter(|skeleton| !common.contains(skeleton))
         && skeleton < parents.len()
-        && !common.contains(&skeleton)
     {
         let says = format!("node {skeleton} is not above all joints");
         rules.warn(codes::GLTF_MOTION, format!("{pointer}/skeleton"), says);
-    }
-}
-
-/// A scene that shows a skinned mesh has its joints too.
-fn same_scenes(
-    rules: &mut Rules,
-    node: usize,
-    skin: &Value,
-    parents: &[Option<usize>],
-    pointer: &str,
-) {
-    let root = |node| ancestors(parents, node).last().copied().unwrap_or(node);
-    let joint_roots: BTreeSet<usize> = joints(skin).map(root).collect();
-    let here = root(node);
-    for (s, scene) in items(rules.json, "scenes").iter().enumerate() {
-        let roots: BTreeSet<usize> = items(scene, "nodes").iter().filter_map(natural).collect();
-        if roots.contains(&here) && !joint_roots.is_subset(&roots) {
-            let says = format!("scene {s} has this skinned mesh without its joints");
-            rules.warn(codes::GLTF_MOTION, pointer, says);
-        }
     }
 }

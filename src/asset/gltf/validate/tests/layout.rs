@@ -21,6 +21,8 @@ fn buffers() {
         &[("/buffers/0/uri", json!(data(&[0; 8])))],
     );
     tells("E126", "/buffers/0", &[("/buffers/0/uri", Value::Null)]);
+    let broken = json!("data:application/octet-stream;base64,*");
+    tells("E126", "/buffers/0/uri", &[("/buffers/0/uri", broken)]);
     let second = |uri: Value| ("/buffers/1", json!({ "byteLength": 9, "uri": uri }));
     tells("W125", "/buffers/1/uri", &[second(json!("missing.bin"))]);
     tells("W125", "/buffers/1", &[second(json!(data(&[0; 8])))]);

@@ -124,4 +124,8 @@ fn images() {
     silent(&[embedded("image/png", &png())]);
     tells("W126", "/images/1", &[embedded("image/jpeg", &png())]);
     tells("W126", "/images/1", &[embedded("image/png", &png()[..20])]);
+    let webp = embedded("image/webp", b"RIFF\0\0\0\0WEBPVP8 ");
+    tells("W126", "/images/1", std::slice::from_ref(&webp));
+    let with_extension = [webp, ("/extensionsUsed/2", json!("EXT_texture_webp"))];
+    tells("W122", "/extensionsUsed/2", &with_extension);
 }
