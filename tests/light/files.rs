@@ -245,10 +245,10 @@ fn a_second_set_of_coordinates_is_mapped_and_wrapped() {
                     let Shape::Triangle { more, .. } = &mut surface.shape else {
                         continue;
                     };
-                    *more = Some(Corners {
+                    *more = Some(Box::new(Corners {
                         uv1: [0, 1, 2].map(|k| second(3 * t + k)),
                         tint: [DVec3::ONE; 3],
-                    });
+                    }));
                     repaint(surface, |m| {
                         m.color = Color::Image(reference::Image {
                             second: true,
@@ -299,10 +299,10 @@ fn tinted(name: &str, place: &str, unlit: bool) -> Stage {
                 let Shape::Triangle { more, .. } = &mut surface.shape else {
                     continue;
                 };
-                *more = Some(Corners {
+                *more = Some(Box::new(Corners {
                     uv1: [DVec2::ZERO; 3],
                     tint: [0, 1, 2].map(|k| DVec3::from(tint(3 * t + k).map(f64::from))),
-                });
+                }));
                 surface.tinted_emission = unlit;
                 surface.emission = Color::Flat(DVec3::splat(f64::from(u8::from(unlit)) * 2.0));
                 repaint(surface, |m| {

@@ -18,7 +18,7 @@ pub(crate) enum Shape {
         /// Corner normals; flat if none.
         n: Option<[DVec3; 3]>,
         uv: [DVec2; 3],
-        more: Option<Corners>,
+        more: Option<Box<Corners>>,
     },
 }
 
@@ -196,10 +196,10 @@ fn hit(scene: &Scene, ray: &Ray, surface: usize, (t, w): Crossing) -> Hit {
                 ng,
                 ns: if ns.dot(ng) < 0.0 { -ns } else { ns },
                 uv: uv[0] * w[0] + uv[1] * w[1] + uv[2] * w[2],
-                uv1: more.map_or(DVec2::ZERO, |m| {
+                uv1: more.as_ref().map_or(DVec2::ZERO, |m| {
                     m.uv1[0] * w[0] + m.uv1[1] * w[1] + m.uv1[2] * w[2]
                 }),
-                tint: more.map_or(DVec3::ONE, |m| {
+                tint: more.as_ref().map_or(DVec3::ONE, |m| {
                     m.tint[0] * w[0] + m.tint[1] * w[1] + m.tint[2] * w[2]
                 }),
                 margin: w[0].min(w[1]).min(w[2]),
