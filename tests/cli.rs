@@ -351,6 +351,35 @@ fn check_and_explain_answer_people_and_scripts() {
 }
 
 #[test]
+fn lights_without_extent_are_explained_and_missed() {
+    let folder = Folder::new("punctual");
+    let lit = SCENE.replace(
+        "(name: \"ball\"",
+        "(name: \"moon\", light: Sun(irradiance: (1, 1, 1))), (name: \"ball\"",
+    );
+    fs::write(folder.path("lit.ron"), lit).expect("writable");
+    let explained = text(&folder.run(&["explain", "lit.ron"]).stdout);
+    let line = explained
+        .lines()
+        .find(|line| line.contains("lights without extent"));
+    assert!(line.is_some_and(|line| line.ends_with("asked for by \"moon\"")));
+    let warning = "with --nee off, lights without extent";
+    expect(
+        &folder.run(&["render", "lit.ron", "--nee", "off"]),
+        0,
+        &[warning],
+    );
+    for args in [
+        &["render", "lit.ron"][..],
+        &["render", "scene.ron", "--nee", "off"],
+    ] {
+        let told = folder.run(args);
+        expect(&told, 0, &[]);
+        assert!(!text(&told.stderr).contains(warning));
+    }
+}
+
+#[test]
 fn a_reader_that_leaves_is_no_panic() {
     let folder = Folder::new("pipe");
     for args in [

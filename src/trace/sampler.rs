@@ -180,6 +180,8 @@ mod tests {
         for sampler in [Sampler::Independent, Sampler::Sobol] {
             let others = [
                 (pixel_key(0, 0, 0, 0), Pair::Light(0)),
+                (pixel_key(0, 0, 0, 0), Pair::Opacity(0, 0)),
+                (pixel_key(0, 0, 0, 0), Pair::Opacity(3, 17)),
                 (pixel_key(0, 0, 1, 0), Pair::Pixel),
                 (pixel_key(0, 1, 0, 0), Pair::Pixel),
                 (pixel_key(1, 0, 0, 0), Pair::Pixel),
