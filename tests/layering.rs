@@ -47,7 +47,7 @@ const RULES: &[Rule] = &[
         &["glam", "hecs", "rayon"],
     ),
     ("trace", &["flat", "math"], &["glam"]),
-    ("film", &["math"], &["exr", "png", "thiserror"]),
+    ("film", &["math"], &["exr", "gif", "png", "thiserror"]),
     (
         "render",
         &[
@@ -90,6 +90,7 @@ const CRATES: &[&str] = &[
     "clap",
     "ctrlc",
     "exr",
+    "gif",
     "glam",
     "gltf",
     "hecs",

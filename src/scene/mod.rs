@@ -19,8 +19,10 @@ mod split;
 mod srgb;
 mod syntax;
 mod values;
+mod write;
 
 pub use schema::*;
+pub use write::write;
 
 use crate::diag::{Diagnostic, Severity, codes};
 use entity::RawEntity;

@@ -78,19 +78,24 @@ pub(super) fn camera<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<CameraDe
     let pose = at
         .zip(look_at)
         .map(|(at, look_at)| CameraPose { at, look_at, up });
-    let distance = pose.map_or(0.0, |p| length(sub(p.look_at, p.at)));
     if let Some(pose) = pose {
         check_view(reader, &fields, &pose);
     }
-    let focus = if distance > 0.0 && distance.is_finite() {
-        distance
-    } else {
-        CameraDesc::FOCUS_DISTANCE
-    };
+    let focus = pose.map_or(CameraDesc::FOCUS_DISTANCE, |p| default_focus(&p));
     Some(CameraDesc {
         pose,
         ..optics(&fields, focus)
     })
+}
+
+/// Focus of a camera that says none: on the point that it looks at.
+pub(super) fn default_focus(pose: &CameraPose) -> f64 {
+    let distance = length(sub(pose.look_at, pose.at));
+    if distance > 0.0 && distance.is_finite() {
+        distance
+    } else {
+        CameraDesc::FOCUS_DISTANCE
+    }
 }
 
 /// A camera on an entity, which stands where the entity does.

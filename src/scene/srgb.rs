@@ -14,6 +14,13 @@ pub(super) fn decode_hex(hex: &str) -> Option<[f64; 3]> {
     Some([channel(0)?, channel(1)?, channel(2)?])
 }
 
+/// `#rrggbb` of a linear colour that is exactly one; `None` for any other.
+pub(super) fn encode_hex(linear: [f64; 3]) -> Option<String> {
+    let channel = |x: f64| (0..=u8::MAX).find(|&value| decode(value) == x);
+    let [r, g, b] = linear.map(channel);
+    Some(format!("#{:02x}{:02x}{:02x}", r?, g?, b?))
+}
+
 /// Linear value of an 8-bit sRGB channel.
 fn decode(value: u8) -> f64 {
     let encoded = f64::from(value) / 255.0;

@@ -2,7 +2,7 @@
 
 use super::*;
 
-const GOOD: &str = r##"
+pub(super) const GOOD: &str = r##"
 Scene(
     version: 1,
     camera: (at: (0, 0, 55), look_at: (0, 0, 0), up: (0, 1, 0), vfov_deg: 60, lens: (aperture_radius: 0, focus_distance: 55)),
