@@ -9,7 +9,9 @@
 
 pub mod aov;
 mod exr;
+mod gif;
 mod metadata;
+mod palette;
 mod planes;
 mod png;
 mod resolve;
@@ -18,16 +20,17 @@ mod write;
 
 pub use self::aov::Aov;
 pub use self::exr::encode_exr;
+pub use self::gif::{GifFrame, TICKS_PER_SECOND, encode_gif};
 pub use self::metadata::Metadata;
 pub use self::planes::{Film, Planes, Window};
-pub use self::png::encode_png;
+pub use self::png::{develop, encode_png};
 pub use self::write::{check_folder, write_file};
 
 /// An image could not be encoded: its size is beyond what the format holds.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot encode the {format} image: {reason}")]
 pub struct EncodeError {
-    /// `PNG` or `EXR`.
+    /// `PNG`, `EXR` or `GIF`.
     pub format: &'static str,
     /// What the encoder says.
     pub reason: String,

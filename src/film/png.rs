@@ -32,8 +32,9 @@ fn encode(film: &Film, gain: f64, metadata: &Metadata) -> Result<Vec<u8>, ::png:
     Ok(bytes)
 }
 
-/// Three sRGB bytes per pixel.
-fn develop(film: &Film, gain: f64) -> Vec<u8> {
+/// The 8-bit picture: three sRGB bytes per pixel, row by row from the top. `gain` as for [`encode_png`].
+#[must_use]
+pub fn develop(film: &Film, gain: f64) -> Vec<u8> {
     let curve = Encoder::new();
     film.radiance()
         .into_iter()
