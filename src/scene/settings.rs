@@ -81,20 +81,25 @@ pub(super) fn camera<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<CameraDe
     if let Some(pose) = pose {
         check_view(reader, &fields, &pose);
     }
-    let focus = pose.map_or(CameraDesc::FOCUS_DISTANCE, |p| default_focus(&p));
+    let focus = pose.map_or(CameraDesc::FOCUS_DISTANCE, |p| {
+        CameraDesc::default_focus(&p)
+    });
     Some(CameraDesc {
         pose,
         ..optics(&fields, focus)
     })
 }
 
-/// Focus of a camera that says none: on the point that it looks at.
-pub(super) fn default_focus(pose: &CameraPose) -> f64 {
-    let distance = length(sub(pose.look_at, pose.at));
-    if distance > 0.0 && distance.is_finite() {
-        distance
-    } else {
-        CameraDesc::FOCUS_DISTANCE
+impl CameraDesc {
+    /// Focus of a camera that says none: on the point that it looks at.
+    #[must_use]
+    pub fn default_focus(pose: &CameraPose) -> f64 {
+        let distance = length(sub(pose.look_at, pose.at));
+        if distance > 0.0 && distance.is_finite() {
+            distance
+        } else {
+            CameraDesc::FOCUS_DISTANCE
+        }
     }
 }
 

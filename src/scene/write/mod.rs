@@ -6,19 +6,19 @@
 //! Deliberately absent: comments (the caller puts them in front), and names that a scene lacks: an unnamed parent or a
 //! material out of range is written as "", which the reader refuses.
 
+mod text;
+
+#[cfg(test)]
+mod tests;
+
 use super::schema::{
-    AnimationDesc, CameraDesc, CameraPose, ColorDesc, EntityDesc, FilterDesc, MaterialDesc,
-    NormalsDesc, RenderDesc, RotateDesc, SceneDesc, ShapeDesc, SpinDesc, TextureFilterDesc,
-    TransformDesc, WrapDesc,
+    AnimationDesc, CameraDesc, CameraPose, ColorDesc, EntityDesc, FilterDesc, GltfDesc, LightDesc,
+    MaterialDesc, NormalsDesc, RenderDesc, RotateDesc, SceneDesc, ShapeDesc, SpinDesc,
+    TextureFilterDesc, TransformDesc, WrapDesc,
 };
-use super::{VERSION, settings, srgb};
+use super::{VERSION, srgb};
 use std::fmt::Write;
-
-/// Longest line that is written if there is a place to break it.
-const WIDTH: usize = 130;
-
-/// Names longer than this do not push the column of all others to the right.
-const MAX_COLUMN: usize = 24;
+use text::{Fields, column, fill, number, vector};
 
 /// The scene as RON, ending in a line end.
 #[must_use]
@@ -50,50 +50,6 @@ pub fn write(desc: &SceneDesc) -> String {
     text
 }
 
-/// Named fields in parentheses, in the order of the calls.
-#[derive(Default)]
-struct Fields(Vec<String>);
-
-impl Fields {
-    fn with(mut self, name: &str, value: impl std::fmt::Display) -> Fields {
-        self.0.push(format!("{name}: {value}"));
-        self
-    }
-
-    /// Leaves the field out where it would say the default.
-    fn unless<T: PartialEq>(
-        self,
-        default: &T,
-        name: &str,
-        value: &T,
-        text: impl Fn(&T) -> String,
-    ) -> Fields {
-        if value == default {
-            self
-        } else {
-            self.with(name, text(value))
-        }
-    }
-
-    fn number_unless(self, default: f64, name: &str, value: f64) -> Fields {
-        self.unless(&default, name, &value, |x| number(*x))
-    }
-
-    /// `(a: .., b: ..)`.
-    fn close(self) -> String {
-        format!("({})", self.0.join(", "))
-    }
-
-    /// The same behind a variant, which stands alone where there is no field.
-    fn close_variant(self, variant: &str) -> String {
-        if self.0.is_empty() {
-            variant.to_owned()
-        } else {
-            format!("{variant}{}", self.close())
-        }
-    }
-}
-
 fn top_camera(camera: &CameraDesc) -> String {
     // A scene that was read has a pose here; without one a camera stands at the origin and looks along −Z.
     let pose = camera.pose.unwrap_or(CameraPose {
@@ -105,7 +61,7 @@ fn top_camera(camera: &CameraDesc) -> String {
         .with("at", vector(&pose.at))
         .with("look_at", vector(&pose.look_at))
         .unless(&CameraPose::UP, "up", &pose.up, |up| vector(up));
-    optics(fields, camera, settings::default_focus(&pose)).close()
+    optics(fields, camera, CameraDesc::default_focus(&pose)).close()
 }
 
 fn optics(fields: Fields, camera: &CameraDesc, default_focus: f64) -> Fields {
@@ -242,42 +198,15 @@ fn entities(desc: &SceneDesc) -> String {
         if components.is_empty() {
             let _ = writeln!(text, "        ({}),", name.trim_end_matches(','));
         } else {
-            let start = format!("        ({name:column$}{}", if column > 0 { " " } else { "" });
+            let start = format!(
+                "        ({name:column$}{}",
+                if column > 0 { " " } else { "" }
+            );
             let _ = writeln!(text, "{}),", fill(start, &components));
         }
     }
     text.push_str("    ]");
     text
-}
-
-/// Appends items to a line, and goes on in the same column below where it would become too long.
-fn fill(start: String, items: &[String]) -> String {
-    let indent = start.chars().count();
-    let mut length = indent;
-    let mut text = start;
-    for (i, item) in items.iter().enumerate() {
-        let item_length = item.chars().count();
-        // Before it ", ", behind it a comma or "),".
-        if i > 0 && length + item_length + 4 > WIDTH {
-            let _ = write!(text, ",\n{:indent$}", "");
-            length = indent;
-        } else if i > 0 {
-            text.push_str(", ");
-            length += 2;
-        }
-        text.push_str(item);
-        length += item_length;
-    }
-    text
-}
-
-/// Width of a column that holds all texts but those that are too long.
-fn column<'t>(texts: impl Iterator<Item = &'t String>) -> usize {
-    let lengths = texts.map(|text| text.chars().count());
-    lengths
-        .filter(|&length| length <= MAX_COLUMN)
-        .max()
-        .unwrap_or(0)
 }
 
 /// `component: value` of everything but the name.
@@ -313,6 +242,12 @@ fn components(desc: &SceneDesc, entity: &EntityDesc) -> Vec<String> {
         let optics = optics(Fields::default(), camera, CameraDesc::FOCUS_DISTANCE);
         fields = fields.with("camera", optics.close());
     }
+    if let Some(value) = &entity.light {
+        fields = fields.with("light", light(value));
+    }
+    if let Some(value) = &entity.gltf {
+        fields = fields.with("gltf", gltf(value));
+    }
     fields.0
 }
 
@@ -322,7 +257,40 @@ fn shape(shape: &ShapeDesc) -> String {
             .with("radius", number(*radius))
             .unless(&false, "inverted", inverted, bool::to_string)
             .close_variant("Sphere"),
-        ShapeDesc::Mesh(path) => format!("Mesh({:?})", path.value),
+        ShapeDesc::Mesh { path, mesh: None } => format!("Mesh({:?})", path.value),
+        ShapeDesc::Mesh {
+            path,
+            mesh: Some(mesh),
+        } => format!("Mesh(path: {:?}, mesh: {mesh})", path.value),
+    }
+}
+
+fn light(light: &LightDesc) -> String {
+    let fields = Fields::default();
+    match light {
+        LightDesc::Point { intensity } => fields
+            .with("intensity", vector(intensity))
+            .close_variant("Point"),
+        LightDesc::Spot {
+            intensity,
+            inner_deg,
+            outer_deg,
+        } => fields
+            .with("intensity", vector(intensity))
+            .with("inner_deg", number(*inner_deg))
+            .with("outer_deg", number(*outer_deg))
+            .close_variant("Spot"),
+        LightDesc::Sun { irradiance } => fields
+            .with("irradiance", vector(irradiance))
+            .close_variant("Sun"),
+    }
+}
+
+fn gltf(gltf: &GltfDesc) -> String {
+    if gltf.lights {
+        format!("{:?}", gltf.path.value)
+    } else {
+        format!("(path: {:?}, lights: false)", gltf.path.value)
     }
 }
 
@@ -378,173 +346,4 @@ fn spin(spin: &SpinDesc) -> String {
         None => fields,
     }
     .close()
-}
-
-fn vector(v: &[f64]) -> String {
-    let numbers: Vec<String> = v.iter().map(|x| number(*x)).collect();
-    format!("({})", numbers.join(", "))
-}
-
-/// The shortest digits that read back to the same bits, with an exponent where zeros would be counted otherwise.
-fn number(x: f64) -> String {
-    if x == 0.0 || (1e-4..1e7).contains(&x.abs()) {
-        x.to_string()
-    } else {
-        format!("{x:e}")
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::{parse, tests::GOOD};
-    use super::*;
-    use std::path::Path;
-
-    fn read(text: &str) -> SceneDesc {
-        match parse(text, Path::new("scene.ron")) {
-            Ok((desc, _)) => desc,
-            Err(found) => panic!("{text}\n{found:#?}"),
-        }
-    }
-
-    /// Everything but places and source; `{:?}` of a number is exact.
-    fn content(desc: &SceneDesc) -> String {
-        let mut desc = desc.clone();
-        desc.source = "".into();
-        forget_path(&mut desc.background);
-        for named in &mut desc.materials {
-            (named.at, named.len) = (0, 0);
-            let (MaterialDesc::Diffuse { color }
-            | MaterialDesc::Mirror { color }
-            | MaterialDesc::Glass { color, .. }
-            | MaterialDesc::Plastic { color, .. }
-            | MaterialDesc::Metal { color, .. }) = &mut named.material;
-            forget_path(color);
-        }
-        for entity in &mut desc.entities {
-            (entity.at, entity.len) = (0, 0);
-            if let Some(ShapeDesc::Mesh(path)) = &mut entity.value.shape {
-                (path.at, path.len) = (0, 0);
-            }
-        }
-        format!("{desc:?}")
-    }
-
-    fn forget_path(color: &mut ColorDesc) {
-        if let ColorDesc::Image { path, .. } | ColorDesc::Hdr(path) = color {
-            (path.at, path.len) = (0, 0);
-        }
-    }
-
-    #[track_caller]
-    fn assert_round_trip(desc: &SceneDesc) -> String {
-        let text = write(desc);
-        let again = read(&text);
-        assert_eq!(content(&again), content(desc), "{text}");
-        assert_eq!(write(&again), text, "writing is stable");
-        text
-    }
-
-    #[test]
-    fn the_content_sees_every_change() {
-        let desc = read(GOOD);
-        for (from, to) in [
-            ("55)", "56)"),
-            ("0.6)", "0.61)"),
-            ("1.5)", "1.6)"),
-            ("cat.png", "dog.png"),
-            ("cat.obj", "dog.obj"),
-            ("material: \"fur\"", "material: \"glass\""),
-        ] {
-            let other = read(&GOOD.replacen(from, to, 1));
-            assert_ne!(content(&other), content(&desc), "{from}");
-        }
-    }
-
-    #[test]
-    fn every_shipped_scene_survives() {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
-        let mut count = 0;
-        for entry in std::fs::read_dir(folder).expect("scenes/").flatten() {
-            let text = std::fs::read_to_string(entry.path()).expect("text");
-            assert_round_trip(&read(&text));
-            count += 1;
-        }
-        assert!(count >= 12, "only {count} scenes");
-    }
-
-    #[test]
-    fn the_sample_is_written_as_a_person_would() {
-        let text = assert_round_trip(&read(GOOD));
-        let wanted = r#"Scene(
-    version: 1,
-    camera: (at: (0, 0, 55), look_at: (0, 0, 0)),
-    materials: {
-        "chalk":  Diffuse,
-        "fur":    Diffuse(color: Texture("../assets/cat.png")),
-        "chrome": Mirror,
-        "glass":  Glass,
-    },
-    entities: [
-        (name: "lamp",  shape: Sphere(radius: 8), transform: (translate: (-10, 20, 40)), emissive: (radiance: (60, 60, 60))),
-        (name: "floor", shape: Sphere(radius: 990), material: "chalk", transform: (translate: (0, -1000, 0))),
-        (name: "ball",  shape: Sphere(radius: 10), material: "glass", transform: (translate: (25, 0, 0))),
-        (name: "hub",   transform: (translate: (0, -10, 0)), spin: (axis: (0, 1, 0), deg_per_s: 90)),
-        (name: "cat",   parent: "hub", shape: Mesh("../assets/cat.obj"), material: "fur", normals: Smooth,
-                        transform: (rotate: Euler(0, 45, 0), scale: 0.6)),
-        (name: "coin",  shape: Sphere(radius: 1), material: "chrome"),
-    ],
-    animation: (frames: 0..48),
-)
-"#;
-        assert_eq!(text, wanted);
-    }
-
-    #[test]
-    fn every_variant_and_awkward_value_survives() {
-        assert_round_trip(&read("(version: 1, camera: (at: (0,0,1), look_at: (0,0,0)))"));
-        assert_round_trip(&read(
-            r##"(version: 1,
-            render: (size: (7, 9), spp: 3, max_bounces: 0, filter: Gaussian(radius_px: 2.25)),
-            background: Srgb("#7f3a01"),
-            materials: {
-                "with \"quotes\", \\ and\nlines": Diffuse(color: Srgb("#c0ffee")),
-                "": Metal(color: Linear(0.1, 0.30000000000000004, 1e-9)),
-                "p": Plastic(color: Linear(0, 0, 0), ior: 1.33),
-                "i": Diffuse(color: Image(path: "é ü\t.png", wrap: Mirror, filter: Nearest)),
-                "w": Mirror(color: Image(path: "x.png", wrap: Clamp)),
-                "g": Glass(ior: 0.667, color: Linear(1, 0.5, 1)),
-            },
-            entities: [
-                (), (name: "only a name"),
-                (name: "eye", transform: (translate: (1e-200, -12345678.9, 0.00001), rotate: Quat(0, 0.1, 0, 1)),
-                    camera: (vfov_deg: 12.5, lens: (aperture_radius: 0.25, focus_distance: 3))),
-                (parent: "eye", shape: Sphere(radius: 1e100, inverted: true), emissive: (radiance: (1, 0, 1e18))),
-                (parent: "only a name", shape: Mesh("a b.obj"), material: "", normals: Flat,
-                    transform: (rotate: AxisAngle(axis: (1, 2, 3), deg: 0), scale: (1, -2, 3)),
-                    spin: (axis: (0, 0, 1), deg_per_s: -7.5, pivot: (0, 0, 0))),
-                (shape: Mesh("c.obj"), normals: File), (shape: Mesh("d.obj"), normals: Smooth(angle_deg: 30)),
-            ],
-            animation: (fps: 29.97, frames: 3..9))"##,
-        ));
-        assert_round_trip(&read(
-            "(version: 1, camera: (at: (1, 2, 3), look_at: (0, 0, 0.1), up: (1, 0, 0), vfov_deg: 1e-3,
-              lens: (aperture_radius: 0.1)), render: (filter: Box))",
-        ));
-    }
-
-    #[test]
-    fn numbers_are_short_and_exact() {
-        for (x, text) in [
-            (0.1 + 0.2, "0.30000000000000004"),
-            (1000.0, "1000"),
-            (1e7, "1e7"),
-            (-0.00001, "-1e-5"),
-            (0.0001, "0.0001"),
-            (f64::MIN_POSITIVE, "2.2250738585072014e-308"),
-        ] {
-            assert_eq!(number(x), text);
-            assert_eq!(number(x).parse(), Ok(x));
-        }
-    }
 }
