@@ -24,6 +24,7 @@
 //! | [`render`] | world, settings | drives build → trace → film over tiles and frames | |
 //! | [`measure`] | an image and its reference | error statistics, FLIP, heat maps | what error is too much |
 //! | [`check`] | a `SceneDesc`, its world and store | warnings of what is probably not meant, all at once | pixels |
+//! | [`author`] | a mesh or a glTF file | a `SceneDesc`: turntable, convert | the world |
 //! | [`diag`] | | **data only**: a diagnostic | everything else |
 //! | [`math`] | | vectors, boxes, lanes, functions with fixed bits | everything else |
 //!
@@ -83,6 +84,7 @@
 //! * `world::AuthoringIndex` is a pair, entity and node, since one entity of a scene may stand for a file's many.
 
 pub mod asset;
+pub mod author;
 pub mod build;
 pub mod check;
 pub mod cli;

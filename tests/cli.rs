@@ -86,6 +86,8 @@ fn help_shows_what_exists_and_how() {
     let top = text(&top.stdout);
     for word in [
         "render",
+        "turntable",
+        "convert",
         "check",
         "explain",
         "compare",
@@ -122,7 +124,7 @@ fn help_shows_what_exists_and_how() {
     for flag in flags {
         assert!(render.contains(flag), "no {flag} in:\n{render}");
     }
-    for later in ["animate", "turntable", "--noise"] {
+    for later in ["animate", "--noise"] {
         assert!(!top.contains(later) && !render.contains(later), "{later}");
     }
     expect(&folder.run(&[]), 2, &["Usage:"]);

@@ -41,6 +41,7 @@ const RULES: &[Rule] = &[
         &["scene", "asset", "world", "diag", "math"],
         &["hecs"],
     ),
+    ("author", &["scene", "asset", "math"], &["thiserror"]),
     (
         "build",
         &["world", "asset", "flat", "math"],
@@ -65,8 +66,8 @@ const RULES: &[Rule] = &[
     (
         "cli",
         &[
-            "asset", "build", "check", "diag", "film", "flat", "math", "measure", "render",
-            "scene", "trace", "world",
+            "asset", "author", "build", "check", "diag", "film", "flat", "math", "measure",
+            "render", "scene", "trace", "world",
         ],
         &[
             "annotate_snippets",

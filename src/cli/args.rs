@@ -1,5 +1,6 @@
 //! The arguments. Every number is checked here, with its range in the message.
 
+use super::author_args::{ConvertArgs, TurntableArgs};
 use crate::build::Accel;
 use crate::film::Aov;
 use crate::scene::RenderDesc;
@@ -21,6 +22,7 @@ Examples:
   luxel render scenes/hero.ron                     writes hero.png here
   luxel render room.ron -o room.exr --aov normal,depth
   luxel check room.ron                             every error at once, of the scene and of its files
+  luxel turntable cat.obj                          a mesh from all sides: cat.gif
   luxel explain room.ron                           what the scene makes luxel do
   luxel compare quick.exr reference.exr            how wrong a picture is
 
@@ -39,6 +41,10 @@ pub(crate) enum Command {
     Render(Box<RenderArgs>),
     /// List every error and warning of a scene and of the files that it names, or of a mesh file
     Check(CheckArgs),
+    /// Show a mesh from all sides: no scene file, a GIF within seconds
+    Turntable(TurntableArgs),
+    /// Write a scene that shows a mesh or a glTF file, to be edited
+    Convert(ConvertArgs),
     /// Show what a scene requires: stages, buffers, bytes, tree, defaults in force
     Explain(InspectArgs),
     /// Measure how far an image is from its reference: RMSE, relMSE, PSNR, bias, FLIP
@@ -300,7 +306,8 @@ fn aov_parser() -> impl TypedValueParser<Value = Aov> {
     })
 }
 
-fn parse_size(text: &str) -> Result<(u32, u32), String> {
+/// `WxH`.
+pub(super) fn parse_size(text: &str) -> Result<(u32, u32), String> {
     let side = |s: &str| {
         let side = s.parse::<u32>().ok();
         side.filter(|side| (1..=RenderDesc::MAX_SIDE).contains(side))

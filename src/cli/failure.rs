@@ -130,6 +130,14 @@ impl Failure {
         }
     }
 
+    /// The same, but what is wrong is that the file is missing.
+    pub(crate) fn missing(self) -> Failure {
+        Failure {
+            code: code::NO_INPUT,
+            ..self
+        }
+    }
+
     /// The same end, but everything has been said.
     pub(crate) fn said(self) -> Failure {
         Failure {

@@ -4,18 +4,23 @@
 //! a picture looks like.
 
 mod args;
+mod author_args;
 mod check;
 mod compare;
 mod contents;
+mod convert;
 pub mod diagnostics;
 mod explain;
 mod failure;
+mod frames;
 mod interrupt;
 mod load;
 mod output;
 mod progress;
 mod render;
+mod start;
 mod stats;
+mod turntable;
 
 use args::{Cli, Command};
 use clap::Parser;
@@ -31,6 +36,8 @@ pub fn run() -> ExitCode {
     let cli = Cli::parse();
     let done = match &cli.command {
         Command::Render(args) => render::run(args),
+        Command::Turntable(args) => turntable::run(args),
+        Command::Convert(args) => convert::run(args),
         Command::Check(args) => check::run(args),
         Command::Explain(args) => explain::run(args),
         Command::Compare(args) => compare::run(args),

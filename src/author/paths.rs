@@ -1,0 +1,92 @@
+//! Paths of files as a scene in a folder names them.
+
+use std::path::{Component, Path, PathBuf};
+
+/// A file cannot be named by a scene.
+#[derive(Debug, thiserror::Error)]
+pub enum PathError {
+    /// Its path is not Unicode, and scenes are text.
+    #[error("\"{}\" cannot be written in a scene: it is not Unicode", .0.display())]
+    NotText(PathBuf),
+    /// It is not there, or the folder of the scene is not.
+    #[error("\"{}\": {source}", .path.display())]
+    Missing {
+        /// Which.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+}
+
+/// The path of an existing `file` relative to the folder of `scene`, which need not exist itself. Links are followed
+/// first, as the system will follow them.
+///
+/// # Errors
+/// [`PathError`].
+pub fn path_from(scene: &Path, file: &Path) -> Result<String, PathError> {
+    let folder = match scene.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    };
+    let resolve = |path: &Path| {
+        path.canonicalize().map_err(|source| PathError::Missing {
+            path: path.to_owned(),
+            source,
+        })
+    };
+    let path = relative(&resolve(folder)?, &resolve(file)?);
+    match path.to_str() {
+        // The format wants `/` on every system.
+        Some(text) => Ok(text.replace(std::path::MAIN_SEPARATOR, "/")),
+        None => Err(PathError::NotText(file.to_owned())),
+    }
+}
+
+/// The way from a folder to a file, both absolute and without `.`, `..` or links.
+fn relative(folder: &Path, file: &Path) -> PathBuf {
+    let (from, to): (Vec<_>, Vec<_>) = (folder.components().collect(), file.components().collect());
+    let common = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
+    if common == 0 {
+        // Another drive.
+        return file.to_owned();
+    }
+    let up = std::iter::repeat_n(Component::ParentDir, from.len() - common);
+    up.chain(to.into_iter().skip(common)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ways_lead_up_and_down() {
+        let of = |a: &str, b: &str| relative(Path::new(a), Path::new(b));
+        assert_eq!(of("/a/b", "/a/b/c.obj"), Path::new("c.obj"));
+        assert_eq!(of("/a/b", "/a/c/d.obj"), Path::new("../c/d.obj"));
+        assert_eq!(of("/a/b", "/d.obj"), Path::new("../../d.obj"));
+        assert_eq!(of("/", "/x/d.obj"), Path::new("x/d.obj"));
+        assert_eq!(of("/a/bc", "/a/b/d.obj"), Path::new("../b/d.obj"));
+    }
+
+    #[test]
+    fn real_files_are_found_again() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let cat = root.join("assets/cat.obj");
+        for scene in [
+            "x.ron",
+            "scenes/x.ron",
+            "src/scene/x.ron",
+            "src/../scenes/x.ron",
+        ] {
+            let scene = root.join(scene);
+            let path = path_from(&scene, &cat).expect("both exist");
+            let found = scene.with_file_name(&path);
+            assert!(
+                !path.starts_with('/') && found.is_file(),
+                "{scene:?}: {path}"
+            );
+        }
+        assert!(path_from(&root.join("no/such/x.ron"), &cat).is_err());
+        assert!(path_from(&root.join("x.ron"), &root.join("assets/dog.obj")).is_err());
+    }
+}
