@@ -26,6 +26,9 @@ const LAMP_DISTANCE: f64 = 4.0;
 const LAMP_RADIUS: f64 = 0.6;
 const LAMP_GIVES: [f64; 3] = [0.8, 0.75, 0.68];
 
+/// Digits of its radius.
+const LAMP_DIGITS: usize = 4;
+
 /// The sky that comes with it.
 const SKY: [f64; 3] = [0.28, 0.31, 0.36];
 
@@ -249,7 +252,7 @@ impl Bounds {
         EntityDesc {
             name: Some(name),
             shape: Some(ShapeDesc::Sphere {
-                radius: LAMP_RADIUS * self.reach,
+                radius: numbers::significant(LAMP_RADIUS * self.reach, LAMP_DIGITS),
                 inverted: false,
             }),
             transform: TransformDesc {

@@ -18,28 +18,39 @@ pub enum PathError {
     },
 }
 
-/// The path of an existing `file` relative to the folder of `scene`, which need not exist itself. Links are followed
-/// first, as the system will follow them.
+/// The path of an existing `file` relative to the folder of `scene`, which need not exist itself. Links of folders are
+/// followed first, as the system will follow them; a link that is the file itself keeps its name, since what the file
+/// names lies beside the link.
 ///
 /// # Errors
 /// [`PathError`].
 pub fn path_from(scene: &Path, file: &Path) -> Result<String, PathError> {
-    let folder = match scene.parent() {
-        Some(folder) if folder != Path::new("") => folder,
-        _ => Path::new("."),
+    let missing = |source| PathError::Missing {
+        path: file.to_owned(),
+        source,
     };
-    let resolve = |path: &Path| {
-        path.canonicalize().map_err(|source| PathError::Missing {
-            path: path.to_owned(),
-            source,
-        })
-    };
-    let path = relative(&resolve(folder)?, &resolve(file)?);
+    let name = file
+        .file_name()
+        .ok_or_else(|| missing(std::io::ErrorKind::NotFound.into()))?;
+    file.metadata().map_err(missing)?;
+    let path = relative(&folder_of(scene)?, &folder_of(file)?.join(name));
     match path.to_str() {
         // The format wants `/` on every system.
         Some(text) => Ok(text.replace(std::path::MAIN_SEPARATOR, "/")),
         None => Err(PathError::NotText(file.to_owned())),
     }
+}
+
+/// The folder that a file is in, from the root and without links.
+fn folder_of(file: &Path) -> Result<PathBuf, PathError> {
+    let folder = match file.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    };
+    folder.canonicalize().map_err(|source| PathError::Missing {
+        path: folder.to_owned(),
+        source,
+    })
 }
 
 /// The way from a folder to a file, both absolute and without `.`, `..` or links.

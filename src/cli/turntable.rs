@@ -71,8 +71,11 @@ fn renderer(args: &TurntableArgs, turn: &Turn) -> Result<Renderer, Failure> {
         frames: turn.frames,
         seconds: turn.seconds,
     };
-    let desc = author::turntable(&mesh.points, &wanted)
-        .map_err(|e| Failure::bad_file(format!("cannot place \"{}\": {e}", args.mesh.display())))?;
+    let desc = author::turntable(&mesh.points, &wanted).map_err(|e| {
+        // They may say why there is nothing to place.
+        let _ = diagnostics::print(mesh.loader.warnings());
+        Failure::bad_file(format!("cannot place \"{}\": {e}", args.mesh.display()))
+    })?;
     let text = format!("{}{}", header(args, &place), scene::write(&desc));
     if args.scene.is_some() {
         start::write_scene(&place, &text)?;
@@ -93,11 +96,14 @@ fn renderer(args: &TurntableArgs, turn: &Turn) -> Result<Renderer, Failure> {
     Renderer::new(&desc, spawned.world, &spawned.assets, settings).map_err(|e| Failure::threads(&e))
 }
 
-/// Where the scene stands, or would stand.
+/// Where the scene stands, or would stand: beside the mesh, so that its text does not depend on the current folder.
 fn scene_path(args: &TurntableArgs) -> PathBuf {
     match &args.scene {
         Some(path) => path.clone(),
-        None => with_suffix(args.mesh.file_stem(), "turntable.ron"),
+        None => {
+            let name = with_suffix(args.mesh.file_stem(), "turntable.ron");
+            args.mesh.with_file_name(name)
+        }
     }
 }
 

@@ -80,6 +80,17 @@ fn a_mesh_alone_makes_a_gif_here() {
         expect(&again, 0, &[]);
         assert!(folder.bytes("again.gif") == bytes, "{threads} threads");
     }
+    std::fs::create_dir(folder.0.join("deep")).expect("ours");
+    let mut elsewhere = folder.luxel(&["turntable", "../wedge.obj"]);
+    let output = elsewhere
+        .args(QUICK)
+        .current_dir(folder.0.join("deep"))
+        .output();
+    expect(&output.expect("luxel runs"), 0, &[]);
+    assert!(
+        folder.bytes("deep/wedge.gif") == bytes,
+        "from another folder"
+    );
 }
 
 #[test]
