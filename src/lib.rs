@@ -69,9 +69,10 @@
 //!   path in 10⁵ bounces in the corners of a closed box.
 //! * The metadata of an EXR stand in one text attribute, since the writer keeps attributes in a hash map, whose order would
 //!   make equal renders unequal files.
-//! * tobj gets cleaned text in groups of faces with equal attributes, after a scan of our own that resolves every index, so
-//!   that it has nothing to fill in; MTL files are read by a reader of our own. Triangles without area are dropped on
-//!   reading, so that the `prim` channel counts those that are kept.
+//! * tobj reads the numbers of vertices, as cleaned lines, a block at a time. Faces are read by a scan of our own, which
+//!   has the line at hand that an error is about, resolves every index and gives a corner what its own token names: the
+//!   parser would fill in the rest, and knows no lines. MTL files are read by a reader of our own. Triangles without area
+//!   are dropped on reading, so that the `prim` channel counts those that are kept.
 //! * The types of [`scene`] are plain, without serde: the reader cuts the text layer by layer and reads every field by
 //!   itself, so that several errors of one entity are told at once, each at its place.
 //! * `gltf` on an entity also takes a long form, `(path: "room.glb", lights: false)`, and `Mesh` one that names a mesh of

@@ -23,6 +23,7 @@ const RULES: &[Rule] = &[
         &[
             "gltf",
             "image",
+            "memchr",
             "rayon",
             "serde_json",
             "sha2",
@@ -97,6 +98,7 @@ const CRATES: &[&str] = &[
     "hecs",
     "image",
     "indicatif",
+    "memchr",
     "png",
     "rayon",
     "ron",

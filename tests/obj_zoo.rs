@@ -145,8 +145,9 @@ fn is_error(error: &luxel::diag::Diagnostic, code: &str, path: &Path) -> bool {
 }
 
 fn uv_triangles(mesh: &Mesh) -> u64 {
-    let complete = |uvs: &&[Option<_>]| uvs.iter().all(Option::is_some);
-    mesh.uvs.chunks(3).filter(complete).count() as u64
+    let has_uv = |corner: usize| mesh.uvs.get(corner).is_some();
+    let complete = |triangle: &usize| (0..3).all(|k| has_uv(3 * triangle + k));
+    (0..mesh.triangle_count()).filter(complete).count() as u64
 }
 
 /// The box of the corners, not of the vertices that no face uses.

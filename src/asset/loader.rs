@@ -1,9 +1,12 @@
 //! The loader: paths to ids while a scene is spawned, then the immutable store.
 
+use super::limits::{Budget, Limits};
 use super::materials::Source;
 use super::paths::{canonical, similar_file};
+use super::reading::Reading;
 use super::{
-    AssetStore, Mesh, MeshId, Model, ModelId, Texture, TextureId, codes, gltf, obj, text, texture,
+    AssetStore, Mesh, MeshId, Model, ModelId, Texture, TextureId, codes, gltf, obj, scan, text,
+    texture,
 };
 use crate::diag::Diagnostic;
 use sha2::{Digest, Sha256};
@@ -16,11 +19,13 @@ use std::sync::Arc;
 /// Two paths to one file give one id. A file that failed fails again with the same diagnostics.
 #[derive(Debug, Default)]
 pub struct Loader {
-    store: AssetStore,
+    pub(super) store: AssetStore,
     meshes: BTreeMap<PathBuf, Result<MeshId, Vec<Diagnostic>>>,
     textures: BTreeMap<PathBuf, Result<TextureId, Diagnostic>>,
     models: BTreeMap<PathBuf, Result<ModelId, Vec<Diagnostic>>>,
     pub(super) warnings: Vec<Diagnostic>,
+    budget: Budget,
+    reading: Arc<Reading>,
     hash: Sha256,
     bytes: u64,
 }
@@ -30,6 +35,21 @@ impl Loader {
     #[must_use]
     pub fn new() -> Loader {
         Loader::default()
+    }
+
+    /// A loader that has read nothing, and will not take more than this.
+    #[must_use]
+    pub fn with_limits(limits: Limits) -> Loader {
+        Loader {
+            budget: Budget::of(limits),
+            ..Loader::default()
+        }
+    }
+
+    /// Where another thread sees which file is being read.
+    #[must_use]
+    pub fn reading(&self) -> Arc<Reading> {
+        self.reading.clone()
     }
 
     /// Reads an OBJ file with its materials and their textures.
@@ -110,17 +130,29 @@ impl Loader {
         AssetStore {
             content_hash: self.hash.finalize().into(),
             bytes: self.bytes,
+            memory: self.budget.used(),
             ..self.store
         }
+    }
+
+    /// Takes memory for what a file decodes to, before it is allocated: every reader asks here for what its file claims.
+    ///
+    /// # Errors
+    /// If it is not left, with the number and what to do.
+    pub(super) fn charge(&mut self, bytes: u64, what: &str, path: &Path) -> Result<(), Diagnostic> {
+        self.budget.charge(bytes, what, path)
     }
 
     /// The bytes of a regular file, which enter the hash.
     pub(super) fn read(&mut self, path: &Path) -> Result<Vec<u8>, Diagnostic> {
         let error = |says: String| Diagnostic::error(codes::UNREADABLE, says).in_file(path);
-        let is_file = std::fs::metadata(path).map(|meta| meta.is_file());
-        let bytes = match is_file {
-            Ok(true) => std::fs::read(path),
-            Ok(false) => return Err(error("this is not a file".into())),
+        let bytes = match std::fs::metadata(path) {
+            Ok(meta) if meta.is_file() => {
+                self.budget.allow(meta.len(), "the file", path)?;
+                self.reading.begin(path, meta.len());
+                std::fs::read(path)
+            }
+            Ok(_) => return Err(error("this is not a file".into())),
             Err(e) => Err(e),
         };
         let bytes = bytes.map_err(|e| {
@@ -133,6 +165,20 @@ impl Loader {
         self.hash.update(Sha256::digest(&bytes));
         self.bytes += bytes.len() as u64;
         Ok(bytes)
+    }
+
+    /// Reads the header of an image and takes the memory that its texels will need.
+    pub(super) fn open_image<'a>(
+        &mut self,
+        path: &'a Path,
+        bytes: &'a [u8],
+    ) -> Result<texture::Image<'a>, Diagnostic> {
+        let image = texture::Image::open(path, bytes)?;
+        let says = image.says();
+        self.budget
+            .allow(image.passing(), &format!("decoding {says}"), path)?;
+        self.charge(image.kept(), &says, path)?;
+        Ok(image)
     }
 
     /// What reading a texture file gave, if it was read.
@@ -158,7 +204,7 @@ impl Loader {
 
     fn read_texture(&mut self, path: &Path) -> Result<Texture, Diagnostic> {
         let bytes = self.read(path)?;
-        texture::decode(path, &bytes)
+        self.open_image(path, &bytes)?.decode()
     }
 
     fn read_mesh(&mut self, path: &Path) -> Result<Mesh, Vec<Diagnostic>> {
@@ -168,11 +214,11 @@ impl Loader {
         let in_file = |found: Vec<Diagnostic>| -> Vec<Diagnostic> {
             found.into_iter().map(|one| one.in_file(path)).collect()
         };
-        let scan = obj::scan(&text).map_err(in_file)?;
+        let scan = scan::scan(&text, path, &mut self.budget).map_err(in_file)?;
         let libraries = self.libraries(&source, &scan.libraries)?;
         let (materials, by_use) = self.materials(&source, &scan, &libraries)?;
         let mut warnings = Vec::new();
-        let mesh = obj::triangles(&text, &scan, &by_use, &mut warnings);
+        let mesh = obj::triangles(&text, scan, &by_use, &mut warnings);
         self.warnings.extend(in_file(warnings));
         let mesh = mesh.map_err(|e| in_file(vec![e]))?;
         Ok(Mesh {

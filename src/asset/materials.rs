@@ -3,7 +3,7 @@
 use super::loader::Loader;
 use super::paths::{beside, library_names, most_similar, same_name_beside, similar_file};
 use super::scan::{Named, Scan, at_line};
-use super::{MeshMaterial, TextureId, TextureUse, codes, mtl, text};
+use super::{AlphaMode, MeshMaterial, Opacity, TextureId, TextureUse, codes, mtl, text};
 use crate::diag::Diagnostic;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -104,12 +104,14 @@ impl Loader {
         scan: &Scan,
         libraries: &Libraries,
     ) -> Result<Resolved, Vec<Diagnostic>> {
-        let mut used = vec![false; scan.uses.len()];
-        for face in &scan.faces {
-            if let Some(line) = face.used {
-                used[line as usize] = true;
-            }
-        }
+        let ends = scan.uses.iter().skip(1).map(|line| line.first);
+        let ends = ends.chain([scan.corners.len() / 3]);
+        let used: Vec<bool> = scan
+            .uses
+            .iter()
+            .zip(ends)
+            .map(|(line, end)| end > line.first)
+            .collect();
         self.warn_of_duplicates(libraries);
         if let Some(first) = used.iter().position(|&used| used)
             && libraries.read.is_empty()
@@ -196,8 +198,55 @@ impl Loader {
         }
         Ok(MeshMaterial {
             texture: texture.map(TextureUse::plain),
+            opacity: self.opacity(&source, definition)?,
             emission: definition.emission,
             ..MeshMaterial::diffuse(name, color.map(|c| c.min(1.0)))
+        })
+    }
+
+    /// How much of a material's surface is there. No one means a surface that cannot be seen: exporters that write
+    /// `Tr 1` or `d 0` mean an opaque one.
+    fn opacity(
+        &mut self,
+        source: &Source<'_>,
+        definition: &mtl::Definition,
+    ) -> Result<Opacity, Diagnostic> {
+        let name = &definition.name;
+        let mut factor = 1.0;
+        match definition.opacity {
+            Some((0.0, at)) => {
+                let says = format!("\"{name}\" would be invisible, and is taken as opaque");
+                let warning = Diagnostic::warning(codes::INVISIBLE, says);
+                self.warnings.push(source.place(warning, at));
+            }
+            Some((opacity, _)) => factor = opacity,
+            None => {}
+        }
+        let mut texture = None;
+        if let Some((path, at)) = &definition.opacity_texture
+            && let Some(id) = self.material_texture(source, path, *at)?
+        {
+            if self.store.texture(id).alpha.is_some() {
+                texture = Some(TextureUse::plain(id));
+            } else if definition
+                .texture
+                .as_ref()
+                .is_none_or(|(color, _)| color != path)
+            {
+                // The colour's own image is named out of habit.
+                let says = format!("the image has no alpha: \"{name}\" stays opaque");
+                let warning = Diagnostic::warning(codes::NO_ALPHA, says);
+                self.warnings.push(source.place(warning, *at));
+            }
+        }
+        let mode = match (factor, texture) {
+            (1.0, None) => AlphaMode::Opaque,
+            _ => AlphaMode::Blend,
+        };
+        Ok(Opacity {
+            factor,
+            texture,
+            mode,
         })
     }
 
@@ -211,8 +260,7 @@ impl Loader {
         if let Some(path) = self.locate(source, at, name) {
             return self.texture(&path).map(Some);
         }
-        let says =
-            format!("the texture \"{name}\" is missing: the material keeps its plain colour");
+        let says = format!("the texture \"{name}\" is missing: the material does without");
         let mut warning = Diagnostic::warning(codes::TEXTURE_MISSING, says);
         if let Some(similar) = similar_file(&beside(source.path, name)) {
             warning = warning.hint(format!("did you mean \"{similar}\"?"));

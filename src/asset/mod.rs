@@ -4,7 +4,7 @@
 //! file and line, or file and JSON pointer.
 //!
 //! ```text
-//!  OBJ ─▶ text ─▶ scan (lines, indices, groups of equal attributes) ─▶ tobj ─▶ obj (triangles in file order) ─▶ Mesh
+//!  OBJ ─▶ text ─▶ scan (lines, indices; numbers by tobj) ─▶ obj (polygons cut, triangles in file order) ─▶ Mesh
 //!  MTL ─▶ text ─▶ mtl ─▶ MeshMaterial        PNG, JPEG ─▶ texture ─▶ Texture
 //!  glTF, GLB ─▶ gltf (its own picture) ─▶ Model of nodes, Meshes, MeshMaterials, Textures
 //! ```
@@ -12,13 +12,20 @@
 //! Deliberately absent: the scene, the world, pixels of the film.
 
 pub mod codes;
+mod corner;
+mod duplicates;
+mod face;
 mod gltf;
+mod limits;
 mod loader;
 mod materials;
 mod mtl;
 pub mod normals;
 mod obj;
 mod paths;
+mod places;
+mod reading;
+mod records;
 mod scan;
 #[cfg(test)]
 mod tests;
@@ -26,7 +33,10 @@ mod text;
 mod texture;
 mod triangulate;
 
+pub use corner::PerCorner;
+pub use limits::Limits;
 pub use loader::Loader;
+pub use reading::Reading;
 
 use crate::math::{DAffine3, DVec2, DVec3};
 use std::path::PathBuf;
@@ -59,15 +69,15 @@ pub struct Mesh {
     pub corners: Vec<u32>,
     /// Texture coordinates of each corner, v up; `None` for a triangle whose face has none. Empty when the file has
     /// none at all, else length `3 * triangles`.
-    pub uvs: Vec<Option<DVec2>>,
+    pub uvs: PerCorner<DVec2>,
     /// The second set of texture coordinates, like `uvs`. Empty unless a material of the mesh reads it.
-    pub uvs1: Vec<Option<DVec2>>,
+    pub uvs1: PerCorner<DVec2>,
     /// Linear colour of each corner, which multiplies the colour of materials with
     /// [`MeshMaterial::vertex_colors`]. Empty when the file has none, else length `3 * triangles`.
     pub colors: Vec<[f32; 3]>,
     /// Normals of each corner as in the file, unit length; `None` where the file gives none. Empty when the file has
     /// none at all, else length `3 * triangles`.
-    pub normals: Vec<Option<DVec3>>,
+    pub normals: PerCorner<DVec3>,
     /// Whether a mesh without normals is meant to be faceted, as glTF has it (2.0, section 3.7.2.1), not smooth.
     pub faceted: bool,
     /// Index into `materials` of each triangle; `None` where the file names none. Length `triangles`.
@@ -331,6 +341,8 @@ pub struct AssetStore {
     content_hash: [u8; 32],
     /// Behind [`AssetStore::bytes`].
     bytes: u64,
+    /// Behind [`AssetStore::memory`].
+    memory: u64,
 }
 
 impl AssetStore {
@@ -351,6 +363,12 @@ impl AssetStore {
     #[must_use]
     pub fn bytes(&self) -> u64 {
         self.bytes
+    }
+
+    /// Bytes that the files decoded to, as charged to [`Limits`].
+    #[must_use]
+    pub fn memory(&self) -> u64 {
+        self.memory
     }
 
     /// The texture of an id of this store.

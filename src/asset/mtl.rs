@@ -1,6 +1,6 @@
 //! MTL text to materials: our own reader, since the parser's panics on legal files and knows no lines.
 //!
-//! Read: `newmtl`, `Kd`, `map_Kd`, `Ke`. What else changes the look is remembered, to be told of when the material is
+//! Read: `newmtl`, `Kd`, `map_Kd`, `Ke`, `d`, `Tr`, `map_d`. What else changes the look is remembered, to be told of when the material is
 //! used.
 
 use super::codes;
@@ -17,6 +17,12 @@ pub(super) struct Definition {
     pub(super) color: Option<[f64; 3]>,
     /// `map_Kd`: the path as written, and the byte offset of the line.
     pub(super) texture: Option<(String, usize)>,
+    /// `d`, or 1 − `Tr` where there is no `d`, and the byte offset of the line.
+    pub(super) opacity: Option<(f64, usize)>,
+    /// `map_d`, like `texture`.
+    pub(super) opacity_texture: Option<(String, usize)>,
+    /// Whether `opacity` comes from `d`, which counts where there are both.
+    dissolve: bool,
     /// `Ke`, linear.
     pub(super) emission: [f64; 3],
     /// Keywords that change the look and are not modelled, with the byte offset of their line.
@@ -94,6 +100,9 @@ impl Definition {
             at: line.at,
             color: None,
             texture: None,
+            opacity: None,
+            opacity_texture: None,
+            dissolve: false,
             emission: [0.0; 3],
             not_modelled: Vec::new(),
         }
@@ -103,16 +112,14 @@ impl Definition {
         match line.keyword {
             "Kd" => self.color = Some(color(line)?),
             "Ke" => self.emission = color(line)?,
-            "map_Kd" => {
-                let (path, options) = texture_path(&line.rest);
-                let options = options
-                    .into_iter()
-                    .map(|option| (format!("map_Kd {option}"), line.at));
-                self.not_modelled.extend(options);
-                if !path.is_empty() {
-                    self.texture = Some((path, line.at));
-                }
+            "map_Kd" => self.texture = self.texture(line).or(self.texture.take()),
+            "map_d" => self.opacity_texture = self.texture(line).or(self.opacity_texture.take()),
+            "d" => {
+                self.opacity = Some((self.opacity(line)?, line.at));
+                self.dissolve = true;
             }
+            "Tr" if !self.dissolve => self.opacity = Some((1.0 - self.opacity(line)?, line.at)),
+            "Tr" => {}
             keyword if WITHOUT_EFFECT.contains(&keyword) => {}
             keyword if changes_the_look(keyword, line.values()) => {
                 self.not_modelled.push((keyword.to_owned(), line.at));
@@ -120,6 +127,36 @@ impl Definition {
             _ => {}
         }
         Ok(())
+    }
+
+    /// The path of a texture line and its place.
+    fn texture(&mut self, line: &Line<'_>) -> Option<(String, usize)> {
+        let (path, options) = texture_path(&line.rest);
+        let keyword = line.keyword;
+        let options = options
+            .into_iter()
+            .map(|option| (format!("{keyword} {option}"), line.at));
+        self.not_modelled.extend(options);
+        (!path.is_empty()).then_some((path, line.at))
+    }
+
+    /// `d x` or `Tr x`, at most 1. `d -halo x`, opacity by the angle of sight, is not modelled.
+    fn opacity(&mut self, line: &Line<'_>) -> Result<f64, String> {
+        let keyword = line.keyword;
+        let mut words = line.values().split_ascii_whitespace();
+        let word = words.next().unwrap_or_default();
+        if word == "-halo" {
+            self.not_modelled
+                .push((format!("{keyword} -halo"), line.at));
+            return Ok(1.0);
+        }
+        let number: f64 = word
+            .parse()
+            .map_err(|_| format!("`{keyword}` needs a number, not `{word}`"))?;
+        if !(number.is_finite() && number >= 0.0) {
+            return Err(format!("`{keyword}` cannot be {word}"));
+        }
+        Ok(number.min(1.0))
     }
 }
 
@@ -160,16 +197,16 @@ fn changes_the_look(keyword: &str, values: &str) -> bool {
         .collect();
     let all = |neutral: f64| !numbers.is_empty() && numbers.iter().all(|&x| x == neutral);
     match keyword {
-        "d" | "Tf" => !all(1.0),
+        "Tf" => !all(1.0),
         "illum" => numbers
             .first()
             .is_some_and(|&model| model > LAST_PLAIN_MODEL),
-        "Ks" | "Tr" | "Kt" | "Pm" | "Ps" | "Pc" | "Pcr" => !all(0.0),
+        "Ks" | "Kt" | "Pm" | "Ps" | "Pc" | "Pcr" => !all(0.0),
         _ => true,
     }
 }
 
-/// Splits what follows `map_Kd` into the path, which may have spaces, and the options that would change the look.
+/// Splits what follows `map_Kd` or `map_d` into the path, which may have spaces, and the options that would change the look.
 fn texture_path(rest: &str) -> (String, Vec<&str>) {
     let mut rest = rest.trim();
     let mut effective = Vec::new();

@@ -1,7 +1,8 @@
 //! Normals: of the file, and smoothed over faces.
 
-use super::Mesh;
+use super::{Mesh, PerCorner};
 use crate::math::{self, DVec3};
+use std::collections::HashMap;
 
 /// The unit vector of a direction; `None` when it is zero or not finite. Scaled first, so that no length underflows.
 pub(super) fn unit(direction: DVec3) -> Option<DVec3> {
@@ -13,145 +14,176 @@ pub(super) fn unit(direction: DVec3) -> Option<DVec3> {
     Some(scaled / scaled.length())
 }
 
-/// A corner of a face, as its point sees it.
-#[derive(Clone, Copy)]
-struct Fan {
-    /// Unit normal of the face; zero where the face has no area.
-    normal: DVec3,
-    /// Angle of the face at the corner, radians.
-    angle: f64,
-}
+/// Faces at one place beyond which they are not compared with each other: a crease costs their number squared.
+const MAX_CREASED: usize = 4096;
 
-/// Smooth unit normals of a mesh, one per corner: `3 * triangles`, in the order of [`Mesh::corners`].
+/// Smooth unit normals of a mesh.
 ///
 /// Each is the mean of the normals of the faces that meet at the corner's position and turn less than `angle_deg` from
 /// the corner's own face, weighted by their angles there (Thürmer and Wüthrich, "Computing vertex normals from
 /// polygonal facets", 1998), so that cutting a flat face differently changes nothing. Faces meet where coordinates are
 /// equal, not only indices: seams do not crease. Corners of faces without area get the mean of what meets there, or +z.
+/// Where more than 4,096 creased faces meet, each keeps its own normal.
 #[must_use]
-pub fn smooth(mesh: &Mesh, angle_deg: f64) -> Vec<DVec3> {
-    let fans = fans(mesh);
-    let (starts, order) = corners_by_place(mesh);
+pub fn smooth(mesh: &Mesh, angle_deg: f64) -> PerCorner<DVec3> {
     let limit = angle_deg.clamp(0.0, 180.0) * (std::f64::consts::PI / 180.0);
-    let threshold = Threshold {
-        cos: math::cos(limit),
-        cos_half: math::cos(0.5 * limit),
-    };
-    let mut normals = vec![DVec3::Z; mesh.corners.len()];
-    let mut around = Vec::new();
-    for place in starts.windows(2) {
-        let corners = &order[place[0] as usize..place[1] as usize];
-        around.clear();
-        around.extend(corners.iter().map(|&corner| fans[corner as usize]));
-        smooth_place(&around, &threshold, |k, normal| {
-            normals[corners[k] as usize] = normal
-        });
+    let mut smoother = Smoother::new(mesh, math::cos(limit));
+    let creased = smoother.creased(math::cos(0.5 * limit));
+    smoother.crease(&creased);
+    PerCorner {
+        values: smoother.values,
+        of: smoother.of,
     }
-    normals
 }
 
-/// The angle within which faces are smooth together.
-struct Threshold {
+struct Smoother<'a> {
+    mesh: &'a Mesh,
+    /// Cosine of the angle within which faces are smooth together.
     cos: f64,
-    cos_half: f64,
+    /// Unit normal of each triangle; zero where it has no area.
+    faces: Vec<DVec3>,
+    /// First the mean of each place, then what creased corners have.
+    values: Vec<DVec3>,
+    /// Index into `values` of each corner: first its place.
+    of: Vec<u32>,
 }
 
-/// Gives the normal of each of the corners that meet at one place.
-fn smooth_place(around: &[Fan], threshold: &Threshold, mut give: impl FnMut(usize, DVec3)) {
-    let mean = |normals: &mut dyn Iterator<Item = &Fan>| {
-        unit(normals.fold(DVec3::ZERO, |sum, fan| sum + fan.normal * fan.angle))
-    };
-    let all = mean(&mut around.iter());
-    // Faces that all lie within half the angle of one direction lie within the angle of each other: one sum serves all,
-    // which keeps the apex of a cone linear.
-    if let Some(all) = all
-        && around
-            .iter()
-            .all(|fan| fan.normal.dot(all) > threshold.cos_half)
-    {
-        (0..around.len()).for_each(|k| give(k, all));
-        return;
-    }
-    for (k, own) in around.iter().enumerate() {
-        if own.normal == DVec3::ZERO {
-            give(k, all.unwrap_or(DVec3::Z));
-            continue;
+impl<'a> Smoother<'a> {
+    /// Gives every corner the mean of all faces at its place.
+    fn new(mesh: &'a Mesh, cos: f64) -> Smoother<'a> {
+        let places = places(mesh);
+        let count = places.iter().max().map_or(0, |&last| last as usize + 1);
+        let mut sums = vec![DVec3::ZERO; count];
+        let mut faces = Vec::with_capacity(mesh.triangle_count());
+        let of = mesh.corners.iter().map(|&c| places[c as usize]).collect();
+        for triangle in mesh.corners.as_chunks::<3>().0 {
+            let Fan { normal, angles } = Fan::of(mesh, triangle);
+            for (corner, angle) in triangle.iter().zip(angles) {
+                sums[places[*corner as usize] as usize] += normal * angle;
+            }
+            faces.push(normal);
         }
-        let near =
-            |fan: &&Fan| fan.normal == own.normal || fan.normal.dot(own.normal) > threshold.cos;
-        give(
-            k,
-            mean(&mut around.iter().filter(near)).unwrap_or(own.normal),
-        );
+        for sum in &mut sums {
+            *sum = unit(*sum).unwrap_or(DVec3::ZERO);
+        }
+        Smoother {
+            mesh,
+            cos,
+            faces,
+            values: sums,
+            of,
+        }
+    }
+
+    /// The corners at places where faces do not all lie within half the angle of their mean, sorted by place. Elsewhere
+    /// faces lie within the angle of each other, and one sum serves all: this keeps the apex of a cone linear.
+    fn creased(&self, cos_half: f64) -> Vec<u32> {
+        let mut creased = vec![false; self.values.len()];
+        for (corner, &place) in self.of.iter().enumerate() {
+            let flat = self.faces[corner / 3].dot(self.values[place as usize]) > cos_half;
+            creased[place as usize] |= !flat;
+        }
+        let of = &self.of;
+        let corners = 0..of.len() as u32;
+        let mut corners: Vec<u32> = corners
+            .filter(|&c| creased[of[c as usize] as usize])
+            .collect();
+        // Stable: in file order within a place.
+        corners.sort_by_key(|&corner| of[corner as usize]);
+        corners
+    }
+
+    /// Gives creased corners the mean of the faces that are near their own.
+    fn crease(&mut self, corners: &[u32]) {
+        let place = |of: &[u32], corner: u32| of[corner as usize];
+        let mut fans: Vec<(DVec3, DVec3)> = Vec::new();
+        let mut rest = corners;
+        while let Some(&first) = rest.first() {
+            let here = place(&self.of, first);
+            let same = rest
+                .iter()
+                .take_while(|&&c| place(&self.of, c) == here)
+                .count();
+            let (around, after) = rest.split_at(same);
+            rest = after;
+            fans.clear();
+            fans.extend(around.iter().map(|&corner| self.fan(corner as usize)));
+            self.crease_place(here, around, &fans);
+        }
+    }
+
+    /// The normal of a corner's face, alone and weighted by the angle there.
+    fn fan(&self, corner: usize) -> (DVec3, DVec3) {
+        let normal = self.faces[corner / 3];
+        let triangle = &self.mesh.corners.as_chunks::<3>().0[corner / 3];
+        let Fan { angles, .. } = Fan::of(self.mesh, triangle);
+        (normal, normal * angles[corner % 3])
+    }
+
+    fn crease_place(&mut self, place: u32, around: &[u32], fans: &[(DVec3, DVec3)]) {
+        let all = self.values[place as usize];
+        let all = if all == DVec3::ZERO { DVec3::Z } else { all };
+        let few = fans.len() <= MAX_CREASED;
+        let mut known: Vec<(DVec3, u32)> = Vec::new();
+        for (&corner, &(own, _)) in around.iter().zip(fans) {
+            let near = |normal: DVec3| normal == own || normal.dot(own) > self.cos;
+            let index = match known.iter().find(|(normal, _)| few && *normal == own) {
+                Some((_, index)) => *index,
+                None => {
+                    let normal = if own == DVec3::ZERO {
+                        all
+                    } else if !few {
+                        own
+                    } else {
+                        let near = fans.iter().filter(|(normal, _)| near(*normal));
+                        unit(near.map(|(_, weighted)| *weighted).sum()).unwrap_or(own)
+                    };
+                    self.values.push(normal);
+                    known.push((own, self.values.len() as u32 - 1));
+                    self.values.len() as u32 - 1
+                }
+            };
+            self.of[corner as usize] = index;
+        }
     }
 }
 
-/// The face normal and angle of every corner.
-fn fans(mesh: &Mesh) -> Vec<Fan> {
-    let mut fans = Vec::with_capacity(mesh.corners.len());
-    for triangle in mesh.corners.as_chunks::<3>().0 {
+/// A triangle as its corners see it.
+struct Fan {
+    /// Unit normal; zero where the triangle has no area.
+    normal: DVec3,
+    /// Angle at each corner, radians.
+    angles: [f64; 3],
+}
+
+impl Fan {
+    fn of(mesh: &Mesh, triangle: &[u32; 3]) -> Fan {
         let [a, b, c] = triangle.map(|index| mesh.positions[index as usize]);
         let edges = [unit(b - a), unit(c - b), unit(a - c)];
         let [Some(ab), Some(bc), Some(ca)] = edges else {
-            fans.extend(
-                [Fan {
-                    normal: DVec3::ZERO,
-                    angle: 0.0,
-                }; 3],
-            );
-            continue;
+            return Fan {
+                normal: DVec3::ZERO,
+                angles: [0.0; 3],
+            };
         };
-        let normal = unit(ab.cross(-ca)).unwrap_or(DVec3::ZERO);
-        let angles =
-            [ab.dot(-ca), bc.dot(-ab), ca.dot(-bc)].map(|cos| math::acos(cos.clamp(-1.0, 1.0)));
-        fans.extend(angles.map(|angle| Fan { normal, angle }));
-    }
-    fans
-}
-
-/// The corners sorted by the place of their position, in file order within a place, and where each place starts.
-fn corners_by_place(mesh: &Mesh) -> (Vec<u32>, Vec<u32>) {
-    let place_of = places(mesh);
-    let count = place_of.iter().max().map_or(0, |&last| last as usize + 1);
-    let mut starts = vec![0u32; count + 1];
-    let place = |corner: usize| place_of[mesh.corners[corner] as usize] as usize;
-    for corner in 0..mesh.corners.len() {
-        starts[place(corner) + 1] += 1;
-    }
-    for i in 0..count {
-        starts[i + 1] += starts[i];
-    }
-    let mut next = starts.clone();
-    let mut order = vec![0u32; mesh.corners.len()];
-    for corner in 0..mesh.corners.len() {
-        let slot = &mut next[place(corner)];
-        order[*slot as usize] = corner as u32;
-        *slot += 1;
-    }
-    (starts, order)
-}
-
-/// A number for each position; equal coordinates have equal numbers.
-fn places(mesh: &Mesh) -> Vec<u32> {
-    // Adding zero makes −0 and 0 one key.
-    let key = |index: u32| (mesh.positions[index as usize] + DVec3::ZERO).to_array();
-    let compare = |a: &u32, b: &u32| {
-        let (a, b) = (key(*a), key(*b));
-        a[0].total_cmp(&b[0])
-            .then(a[1].total_cmp(&b[1]))
-            .then(a[2].total_cmp(&b[2]))
-    };
-    let mut sorted: Vec<u32> = (0..mesh.positions.len() as u32).collect();
-    sorted.sort_unstable_by(|a, b| compare(a, b).then(a.cmp(b)));
-    let mut places = vec![0; sorted.len()];
-    let mut place = 0;
-    for pair in sorted.windows(2) {
-        if compare(&pair[0], &pair[1]).is_ne() {
-            place += 1;
+        let cosines = [ab.dot(-ca), bc.dot(-ab), ca.dot(-bc)];
+        Fan {
+            normal: unit(ab.cross(-ca)).unwrap_or(DVec3::ZERO),
+            angles: cosines.map(|cos| math::acos(cos.clamp(-1.0, 1.0))),
         }
-        places[pair[1] as usize] = place;
     }
-    places
+}
+
+/// A number for each position, in the order of first use; equal coordinates have equal numbers.
+fn places(mesh: &Mesh) -> Vec<u32> {
+    let mut known: HashMap<[u64; 3], u32> = HashMap::with_capacity(mesh.positions.len());
+    let place = |position: &DVec3| {
+        // Adding zero makes −0 and 0 one key.
+        let key = (*position + DVec3::ZERO).to_array().map(f64::to_bits);
+        let next = known.len() as u32;
+        *known.entry(key).or_insert(next)
+    };
+    mesh.positions.iter().map(place).collect()
 }
 
 #[cfg(test)]
@@ -164,6 +196,12 @@ mod tests {
             corners: corners.to_vec(),
             ..Mesh::default()
         }
+    }
+
+    fn all(mesh: &Mesh, angle_deg: f64) -> Vec<DVec3> {
+        let normals = smooth(mesh, angle_deg);
+        assert!(normals.all() && normals.len() == mesh.corners.len());
+        normals.iter().flatten().collect()
     }
 
     /// A cube of 12 triangles; corner index = x + 2y + 4z.
@@ -188,8 +226,8 @@ mod tests {
     #[test]
     fn a_cube_is_sharp_below_its_angle_and_diagonal_above() {
         let cube = cube();
-        let sharp = smooth(&cube, 60.0);
-        let round = smooth(&cube, 100.0);
+        let sharp = all(&cube, 60.0);
+        let round = all(&cube, 100.0);
         for (t, corners) in cube.corners.as_chunks::<3>().0.iter().enumerate() {
             let [a, b, c] = corners.map(|i| cube.positions[i as usize]);
             let face = (b - a).cross(c - a);
@@ -222,7 +260,7 @@ mod tests {
             positions: joined.positions.iter().map(|&p| p * -1.0 + 0.0).collect(),
             ..joined
         };
-        assert_eq!(smooth(&split, 100.0), smooth(&mirrored, 100.0));
+        assert_eq!(all(&split, 100.0), all(&mirrored, 100.0));
     }
 
     #[test]
@@ -232,7 +270,7 @@ mod tests {
             &[0, 1, 2, 0, 2, 1, 0, 0, 1],
         );
         for angle in [0.0, 60.0, 180.0] {
-            let normals = smooth(&flat, angle);
+            let normals = all(&flat, angle);
             assert!(normals.iter().all(|n| n.length() == 1.0), "{normals:?}");
             assert_eq!((normals[1], normals[4]), (DVec3::Z, -DVec3::Z));
         }

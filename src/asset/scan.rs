@@ -1,36 +1,30 @@
-//! The guard before the OBJ parser: reads the lines, checks what the parser would not say, and hands it a clean text.
+//! The guard around the OBJ parser: reads the lines, keeps what the parser would not, and gives it what it can read.
 //!
 //! The parser (`tobj`) gives no line numbers, fails on comments and continuations, and fills in the attributes that a
-//! face lacks from its neighbours. So this pass remembers where each face stands, resolves its indices, and sorts the
-//! faces into one group for each set of attributes (positions alone, with uv, with normals, with both). Within a group
-//! every corner has exactly the attributes that its own token names, and there is nothing to fill in.
+//! face lacks from its neighbours. So faces are read here, with the line at hand that an error is about: every index is
+//! resolved, and every corner has exactly the attributes that its own token names. The numbers of the vertices go
+//! through the parser as lines that it can read (see [`super::records`]).
+//!
+//! Leaves: triangles in file order, each face laid out as a fan. Where a fan does not cover its polygon, the next step
+//! cuts it anew in place: a polygon of n corners is n − 2 triangles either way.
 
 use super::codes;
+use super::corner::{NONE, PerCorner};
+use super::face::{Corner, corner, plain_corners};
+use super::limits::Budget;
+use super::records::{KINDS, Records};
 use super::text::{Line, Lines};
 use crate::diag::Diagnostic;
+use crate::math::{DVec2, DVec3};
+use std::path::Path;
 
 /// Errors reported for one file; more would not help.
 pub(super) const MAX_ERRORS: usize = 20;
 
-/// Which attributes a face gives: bit 0 uv, bit 1 normal. The index of its group.
-pub(super) type AttributeSet = u8;
-
-/// The faces have texture coordinates.
-pub(super) const WITH_UV: AttributeSet = 1;
-/// The faces have normals.
-pub(super) const WITH_NORMAL: AttributeSet = 2;
-
-/// One face of the file.
-pub(super) struct Face {
-    /// Byte offset of its line.
-    pub(super) at: usize,
-    /// Index into [`Scan::uses`] of the `usemtl` in force.
-    pub(super) used: Option<u32>,
-    /// Number of corners, at least 3.
-    pub(super) corners: u32,
-    /// Its attributes, hence its group.
-    pub(super) set: AttributeSet,
-}
+/// Bytes that a vertex of each of [`KINDS`] decodes to.
+const RECORD_BYTES: [usize; 3] = [24, 16, 24];
+/// Bytes that a triangle decodes to: three indices for each of three corners, and its material.
+const TRIANGLE_BYTES: usize = 3 * 3 * 4 + 8;
 
 /// A name or list of names that a line gives (`usemtl`, `mtllib`).
 pub(super) struct Named {
@@ -38,105 +32,136 @@ pub(super) struct Named {
     pub(super) at: usize,
     /// What the line says after its keyword.
     pub(super) name: String,
+    /// Number of triangles before it.
+    pub(super) first: usize,
+}
+
+/// A face of more than three corners.
+pub(super) struct Polygon {
+    /// The first of its triangles.
+    pub(super) first: usize,
+    /// Number of corners.
+    pub(super) corners: usize,
+}
+
+/// How many of something, and the byte offset of the line of the first.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Tally {
+    pub(super) count: usize,
+    pub(super) first: usize,
+}
+
+impl Tally {
+    pub(super) fn add(&mut self, at: usize) {
+        if self.count == 0 {
+            self.first = at;
+        }
+        self.count += 1;
+    }
 }
 
 /// What the scan found.
 #[derive(Default)]
 pub(super) struct Scan {
-    /// Cleaned `v`, `vt` and `vn` lines, in file order.
-    pub(super) vertices: String,
-    /// Cleaned `f` lines with absolute indices, by [`AttributeSet`], in file order.
-    pub(super) groups: [String; 4],
-    /// The faces in file order.
-    pub(super) faces: Vec<Face>,
+    /// The `v` lines.
+    pub(super) positions: Vec<DVec3>,
+    /// Index into `positions` of each corner, or what is beyond it in an error.
+    pub(super) corners: Vec<u32>,
+    /// The `vt` lines, and which each corner names.
+    pub(super) uvs: PerCorner<DVec2>,
+    /// The `vn` lines, of any length, and which each corner names.
+    pub(super) normals: PerCorner<DVec3>,
+    /// The faces that are no triangles, in file order.
+    pub(super) polygons: Vec<Polygon>,
     /// The `usemtl` lines.
     pub(super) uses: Vec<Named>,
     /// The `mtllib` lines.
     pub(super) libraries: Vec<Named>,
-    /// Offsets of faces of one or two corners.
-    pub(super) short: Vec<usize>,
-    /// Offsets of faces that give an attribute to some corners only.
-    pub(super) mixed: Vec<usize>,
-    /// Offsets of faces that name uvs or normals though the file has none of that kind.
-    pub(super) absent: Vec<usize>,
-    /// Whether the file has `vt` lines.
-    pub(super) has_uvs: bool,
-    /// Whether the file has `vn` lines.
-    pub(super) has_normals: bool,
-    /// Errors, at most [`MAX_ERRORS`].
-    pub(super) errors: Vec<Diagnostic>,
+    /// Faces of one or two corners, which are skipped.
+    pub(super) short: Tally,
+    /// Faces that give an attribute to some corners only.
+    pub(super) mixed: Tally,
+    /// Faces that name uvs or normals though the file has none of that kind.
+    pub(super) absent: Tally,
 }
 
-/// The kinds of index in a corner token, in their order.
-const KINDS: [&str; 3] = ["v", "vt", "vn"];
-
-/// Indices of one corner: position, uv, normal; from 1.
-type Corner = [Option<u64>; 3];
-
-/// A reference beyond what the file had defined so far: an error if the file never does.
-struct Forward {
-    at: usize,
-    kind: usize,
-    index: u64,
+/// Scans the text of an OBJ file.
+///
+/// # Errors
+/// Those of all its lines, at most [`MAX_ERRORS`]; a file that takes more than what is left of the budget.
+pub(super) fn scan(
+    source: &str,
+    path: &Path,
+    budget: &mut Budget,
+) -> Result<Scan, Vec<Diagnostic>> {
+    let mut scanner = Scanner {
+        source,
+        path,
+        budget,
+        scan: Scan::default(),
+        records: [0, 1, 2].map(Records::of),
+        counts: [0; 3],
+        forward: Vec::new(),
+        errors: Vec::new(),
+        corners: Vec::new(),
+    };
+    for line in Lines::of(source) {
+        scanner.line(&line).map_err(|fatal| vec![fatal])?;
+    }
+    scanner.finish()
 }
 
 struct Scanner<'a> {
     source: &'a str,
+    path: &'a Path,
+    budget: &'a mut Budget,
     scan: Scan,
-    counts: [u64; 3],
-    forward: Vec<Forward>,
+    records: [Records; 3],
+    /// Lines of each of [`KINDS`] so far.
+    counts: [usize; 3],
+    /// Offsets of faces with a reference beyond what the file had defined so far: an error if the file never does.
+    forward: Vec<usize>,
+    errors: Vec<Diagnostic>,
+    /// Of the face at hand.
     corners: Vec<Corner>,
 }
 
-impl Scan {
-    /// Scans the text of an OBJ file.
-    pub(super) fn of(source: &str) -> Scan {
-        let mut scanner = Scanner {
-            source,
-            scan: Scan::default(),
-            counts: [0; 3],
-            forward: Vec::new(),
-            corners: Vec::new(),
-        };
-        for line in Lines::of(source) {
-            scanner.line(&line);
-        }
-        scanner.finish()
-    }
-
-    /// Whether any face has an attribute.
-    pub(super) fn groups_with(&self, attribute: AttributeSet) -> bool {
-        let has = |set: usize| set & usize::from(attribute) != 0;
-        (0..self.groups.len()).any(|set| has(set) && !self.groups[set].is_empty())
-    }
-}
-
 impl Scanner<'_> {
-    fn line(&mut self, line: &Line<'_>) {
+    fn line(&mut self, line: &Line<'_>) -> Result<(), Diagnostic> {
         match line.keyword {
-            "v" => self.vertex(line, 0),
-            "vt" => self.vertex(line, 1),
-            "vn" => self.vertex(line, 2),
-            "f" => self.face(line),
-            "usemtl" => self.scan.uses.push(named(line)),
-            "mtllib" => self.scan.libraries.push(named(line)),
+            "f" => return self.face(line),
+            "v" => return self.vertex(line, 0),
+            "vt" => return self.vertex(line, 1),
+            "vn" => return self.vertex(line, 2),
+            "usemtl" => self.scan.uses.push(self.named(line)),
+            "mtllib" => self.scan.libraries.push(self.named(line)),
             _ => {}
         }
+        Ok(())
     }
 
-    /// Copies the numbers that count: of a `v` line three, or four where the fourth is the weight `w` (five or more are
+    fn named(&self, line: &Line<'_>) -> Named {
+        Named {
+            at: line.at,
+            name: line.rest.trim_end().to_owned(),
+            first: self.scan.corners.len() / 3,
+        }
+    }
+
+    /// Takes the numbers that count: of a `v` line three, or four where the fourth is the weight `w` (five or more are
     /// vertex colours); of `vt` two, the second being optional; of `vn` three.
-    fn vertex(&mut self, line: &Line<'_>, kind: usize) {
-        let mut numbers = [""; 5];
+    fn vertex(&mut self, line: &Line<'_>, kind: usize) -> Result<(), Diagnostic> {
+        let mut words = [""; 5];
         let mut count = 0;
-        for number in line.values().split_ascii_whitespace().take(numbers.len()) {
-            numbers[count] = number;
+        // As the parser does.
+        for word in line.values().split_whitespace().take(words.len()) {
+            words[count] = word;
             count += 1;
         }
         let (least, kept) = match (kind, count) {
             (0, 4) => (3, 4),
             (1, 1) => {
-                numbers[1] = "0";
+                words[1] = "0";
                 count = 2;
                 (2, 2)
             }
@@ -147,135 +172,172 @@ impl Scanner<'_> {
         if count < least {
             let says = format!("`{}` needs {least} numbers, not {count}", KINDS[kind]);
             self.error(codes::BAD_NUMBER, line.at, says);
-            return;
+            return Ok(());
         }
-        let out = &mut self.scan.vertices;
-        out.push_str(KINDS[kind]);
-        for number in &numbers[..kept] {
-            out.push(' ');
-            out.push_str(number);
+        self.records[kind].push(&words[..kept]);
+        if self.records[kind].is_full() {
+            self.read(kind)
+        } else {
+            Ok(())
         }
-        out.push('\n');
     }
 
-    fn face(&mut self, line: &Line<'_>) {
-        self.corners.clear();
-        for token in line.values().split_ascii_whitespace() {
-            match self.corner(line.at, token) {
-                Ok(corner) => self.corners.push(corner),
-                Err(says) => return self.error(codes::BAD_FACE, line.at, says),
+    /// Has the parser read the vertices that wait.
+    fn read(&mut self, kind: usize) -> Result<(), Diagnostic> {
+        let records = &mut self.records[kind];
+        if self.counts[kind] >= NONE as usize {
+            let says = format!("the file has more than {NONE} `{}` lines", KINDS[kind]);
+            return Err(Diagnostic::error(codes::TOO_LARGE, says));
+        }
+        let bytes = (records.len() * RECORD_BYTES[kind]) as u64;
+        self.budget.charge(bytes, "the mesh so far", self.path)?;
+        let scan = &mut self.scan;
+        match kind {
+            0 => scan
+                .positions
+                .extend(records.read()?.into_iter().map(DVec3::from_array)),
+            1 => scan
+                .uvs
+                .values
+                .extend(records.read()?.into_iter().map(DVec2::from_array)),
+            _ => scan
+                .normals
+                .values
+                .extend(records.read()?.into_iter().map(DVec3::from_array)),
+        }
+        Ok(())
+    }
+
+    fn face(&mut self, line: &Line<'_>) -> Result<(), Diagnostic> {
+        if !plain_corners(line.rest.as_bytes(), &mut self.corners) {
+            self.corners.clear();
+            for token in line.values().split_ascii_whitespace() {
+                match corner(token, &self.counts) {
+                    Ok(corner) => self.corners.push(corner),
+                    Err(says) => {
+                        self.error(codes::BAD_FACE, line.at, says);
+                        return Ok(());
+                    }
+                }
             }
         }
         if self.corners.len() < 3 {
-            self.scan.short.push(line.at);
-            return;
+            self.scan.short.add(line.at);
+            return Ok(());
         }
-        let set = self.attributes(line.at);
-        let Ok(corners) = u32::try_from(self.corners.len()) else {
-            return self.error(
-                codes::TOO_LARGE,
-                line.at,
-                "the face has too many corners".into(),
-            );
-        };
-        self.scan.faces.push(Face {
-            at: line.at,
-            used: (self.scan.uses.len() as u32).checked_sub(1),
-            corners,
-            set,
-        });
-        let out = &mut self.scan.groups[usize::from(set)];
-        out.push('f');
-        for corner in &self.corners {
-            push_corner(out, corner, set);
+        let beyond = |(&index, count): (&u32, usize)| index != NONE && index as usize >= count;
+        let forward = |corner: &Corner| corner.iter().zip(self.counts).any(beyond);
+        if self.corners.iter().any(forward) {
+            self.forward.push(line.at);
         }
-        out.push('\n');
-    }
-
-    /// The attributes that all corners of the face have.
-    fn attributes(&mut self, at: usize) -> AttributeSet {
-        let given = |kind: usize| self.corners.iter().filter(|c| c[kind].is_some()).count();
-        let (uvs, normals, all) = (given(1), given(2), self.corners.len());
-        if (uvs != 0 && uvs != all) || (normals != 0 && normals != all) {
-            self.scan.mixed.push(at);
-        }
-        let uv = if uvs == all { WITH_UV } else { 0 };
-        let normal = if normals == all { WITH_NORMAL } else { 0 };
-        uv | normal
-    }
-
-    fn corner(&mut self, at: usize, token: &str) -> Result<Corner, String> {
-        let mut corner = [None; 3];
-        for (kind, digits) in token.split('/').enumerate() {
-            if kind >= KINDS.len() {
-                return Err(format!("`{token}` has more than three indices"));
-            }
-            if !digits.is_empty() {
-                corner[kind] = Some(self.index(at, kind, digits)?);
+        for kind in 1..KINDS.len() {
+            let given = self
+                .corners
+                .iter()
+                .filter(|corner| corner[kind] != NONE)
+                .count();
+            if given != 0 && given != self.corners.len() {
+                self.scan.mixed.add(line.at);
+                self.corners
+                    .iter_mut()
+                    .for_each(|corner| corner[kind] = NONE);
             }
         }
-        if corner[0].is_none() {
-            return Err(format!("`{token}` names no vertex"));
-        }
-        Ok(corner)
+        self.lay()
     }
 
-    /// The absolute index, from 1, that an index of a face means; negative ones count from the last line so far.
-    fn index(&mut self, at: usize, kind: usize, digits: &str) -> Result<u64, String> {
-        let name = KINDS[kind];
-        let index: i64 = digits
-            .parse()
-            .map_err(|_| format!("`{digits}` is not a `{name}` index"))?;
-        let count = self.counts[kind];
-        match u64::try_from(index) {
-            Ok(0) => Err(format!("`{name}` indices start at 1, and this face uses 0")),
-            Ok(index) => {
-                if index > count {
-                    self.forward.push(Forward { at, kind, index });
-                }
-                Ok(index)
-            }
-            Err(_) => (count + 1).checked_sub(index.unsigned_abs()).filter(|&i| i > 0).ok_or_else(|| {
-                format!("`{name}` index {index} reaches before the first: only {count} stand above this face")
-            }),
+    /// Lays the face out as a fan.
+    fn lay(&mut self) -> Result<(), Diagnostic> {
+        let triangles = self.corners.len() - 2;
+        let bytes = triangles * TRIANGLE_BYTES;
+        self.budget
+            .charge(bytes as u64, "the mesh so far", self.path)?;
+        let scan = &mut self.scan;
+        let before = scan.corners.len();
+        if before + 3 * triangles >= NONE as usize {
+            let says = format!("the file has more than {} triangles", NONE / 3);
+            return Err(Diagnostic::error(codes::TOO_LARGE, says));
         }
+        if triangles > 1 {
+            scan.polygons.push(Polygon {
+                first: before / 3,
+                corners: self.corners.len(),
+            });
+        }
+        lay(&mut scan.corners, &self.corners, 0);
+        for (kind, of) in [(1, &mut scan.uvs.of), (2, &mut scan.normals.of)] {
+            if of.is_empty() && self.corners[0][kind] != NONE {
+                of.resize(before, NONE);
+            }
+            if self.corners[0][kind] != NONE || !of.is_empty() {
+                lay(of, &self.corners, kind);
+            }
+        }
+        Ok(())
     }
 
     fn error(&mut self, code: &'static str, at: usize, says: String) {
-        if self.scan.errors.len() < MAX_ERRORS {
+        if self.errors.len() < MAX_ERRORS {
             let error = at_line(Diagnostic::error(code, says), self.source, at);
-            self.scan.errors.push(error);
+            self.errors.push(error);
         }
     }
 
-    /// Judges the references that had nothing to refer to when they stood there: one error or warning for each face.
-    fn finish(mut self) -> Scan {
-        let (mut wrong, mut absent) = (None, None);
-        for Forward { at, kind, index } in std::mem::take(&mut self.forward) {
-            let count = self.counts[kind];
-            if index <= count {
-                continue;
-            }
-            if kind > 0 && count == 0 {
-                if absent.replace(at) != Some(at) {
-                    self.scan.absent.push(at);
-                }
-            } else if wrong.replace(at) != Some(at) {
-                let name = KINDS[kind];
-                let says = format!("the face uses `{name}` {index}, but the file has {count}");
-                self.error(codes::BAD_FACE, at, says);
+    fn finish(mut self) -> Result<Scan, Vec<Diagnostic>> {
+        for kind in 0..KINDS.len() {
+            if self.records[kind].len() > 0 {
+                self.read(kind).map_err(|fatal| vec![fatal])?;
             }
         }
-        self.scan.has_uvs = self.counts[1] > 0;
-        self.scan.has_normals = self.counts[2] > 0;
-        self.scan
+        self.judge();
+        if !self.errors.is_empty() {
+            return Err(self.errors);
+        }
+        if self.scan.corners.is_empty() {
+            let error = Diagnostic::error(codes::NO_FACES, "the file has no faces");
+            return Err(vec![error]);
+        }
+        // Faces that name what the file has none of.
+        if self.counts[1] == 0 {
+            self.scan.uvs = PerCorner::default();
+        }
+        if self.counts[2] == 0 {
+            self.scan.normals = PerCorner::default();
+        }
+        Ok(self.scan)
+    }
+
+    /// Judges the faces that had nothing to refer to when they stood there: one error or warning for each.
+    fn judge(&mut self) {
+        for at in std::mem::take(&mut self.forward) {
+            let Some(line) = Lines::from(self.source, at).next() else {
+                continue;
+            };
+            let indices = |kind: usize| {
+                let indices = line.values().split_ascii_whitespace();
+                let indices = indices
+                    .filter_map(move |token| token.split('/').nth(kind)?.parse::<u64>().ok());
+                indices.max().unwrap_or_default()
+            };
+            let beyond = |kind: usize| indices(kind) > self.counts[kind] as u64;
+            let defined = |kind: usize| kind == 0 || self.counts[kind] > 0;
+            match (0..KINDS.len()).find(|&kind| defined(kind) && beyond(kind)) {
+                Some(kind) => {
+                    let (name, index, count) = (KINDS[kind], indices(kind), self.counts[kind]);
+                    let says = format!("the face uses `{name}` {index}, but the file has {count}");
+                    self.error(codes::BAD_FACE, at, says);
+                }
+                None if (1..KINDS.len()).any(beyond) => self.scan.absent.add(at),
+                None => {}
+            }
+        }
     }
 }
 
-fn named(line: &Line<'_>) -> Named {
-    Named {
-        at: line.at,
-        name: line.rest.trim_end().to_owned(),
+/// Appends one attribute of the corners of a face, as a fan.
+fn lay(out: &mut Vec<u32>, corners: &[Corner], kind: usize) {
+    for pair in corners[1..].windows(2) {
+        out.extend([corners[0][kind], pair[0][kind], pair[1][kind]]);
     }
 }
 
@@ -283,35 +345,4 @@ fn named(line: &Line<'_>) -> Named {
 pub(super) fn at_line(diagnostic: Diagnostic, source: &str, at: usize) -> Diagnostic {
     let line = source.get(at..).and_then(|text| text.lines().next());
     diagnostic.at(source, at, line.map_or(1, |line| line.trim_end().len()))
-}
-
-fn push_corner(out: &mut String, corner: &Corner, set: AttributeSet) {
-    let index = |kind: usize| corner[kind].unwrap_or_default();
-    out.push(' ');
-    push_decimal(out, index(0));
-    if set != 0 {
-        out.push('/');
-    }
-    if set & WITH_UV != 0 {
-        push_decimal(out, index(1));
-    }
-    if set & WITH_NORMAL != 0 {
-        out.push('/');
-        push_decimal(out, index(2));
-    }
-}
-
-/// Appends a number; `write!` would take a third of the whole scan.
-fn push_decimal(out: &mut String, mut value: u64) {
-    let mut digits = [0u8; 20];
-    let mut first = digits.len();
-    loop {
-        first -= 1;
-        digits[first] = b'0' + (value % 10) as u8;
-        value /= 10;
-        if value == 0 {
-            break;
-        }
-    }
-    out.extend(digits[first..].iter().map(|&digit| char::from(digit)));
 }

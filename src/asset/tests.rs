@@ -2,6 +2,8 @@
 
 mod damage;
 mod images;
+mod materials;
+mod memory;
 
 use super::*;
 use crate::diag::Diagnostic;
@@ -80,8 +82,25 @@ fn points(mesh: &Mesh) -> Vec<[f64; 3]> {
         .collect()
 }
 
+/// The value of every corner.
+fn each<T: Copy>(attribute: &PerCorner<T>) -> Vec<Option<T>> {
+    attribute.iter().collect()
+}
+
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+/// A PNG of one row.
+fn png(color: png::ColorType, depth: png::BitDepth, width: u32, data: &[u8]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, 1);
+    encoder.set_color(color);
+    encoder.set_depth(depth);
+    let mut writer = encoder.write_header().expect("a header");
+    writer.write_image_data(data).expect("data");
+    writer.finish().expect("an end");
+    bytes
+}
 
 #[test]
 fn numbers_keep_all_their_bits() {
@@ -115,6 +134,27 @@ fn layout_does_not_matter() {
     ] {
         assert_eq!(points(&clean(&text)), plain, "{text}");
     }
+    let returns = format!("# head\r{TRIANGLE}f 1 2 \\\r3").replace('\n', "\r");
+    assert_eq!(points(&clean(&returns)), plain, "carriage returns alone");
+    assert_eq!(
+        error(format!("{returns}\rf 1 2 0").replace("\\\r", "")).1,
+        6
+    );
+    for (mark, unit) in [
+        ("\u{feff}", u16::to_le_bytes as fn(u16) -> [u8; 2]),
+        ("\u{feff}", u16::to_be_bytes),
+        ("", u16::to_le_bytes),
+        ("", u16::to_be_bytes),
+    ] {
+        let text = format!("{mark}# caf\u{e9} \u{1f431}\n{TRIANGLE}f 1 2 3");
+        let wide: Vec<u8> = text.encode_utf16().flat_map(unit).collect();
+        assert_eq!(points(&clean(&wide)), plain);
+        assert_eq!(
+            points(&clean([&wide[..], b"\n"].concat())),
+            plain,
+            "an odd byte"
+        );
+    }
     let latin: Vec<u8> = [b"# caf\xE9\n", TRIANGLE.as_bytes(), b"f 1 2 3"].concat();
     assert_eq!(points(&clean(latin)), plain);
     assert_eq!(
@@ -133,7 +173,7 @@ fn a_seam_keeps_both_uvs_exactly() {
     ));
     let uv = |u, v| Some(DVec2::new(u, v));
     assert_eq!(
-        mesh.uvs,
+        each(&mesh.uvs),
         [
             uv(0.1, 0.2),
             uv(0.3, 0.4),
@@ -148,10 +188,10 @@ fn a_seam_keeps_both_uvs_exactly() {
 
 #[test]
 fn mixed_faces_keep_their_own_attributes_in_any_order() {
-    let head = format!("{SQUARE}vt 0.1 0.2\nvt 0.3 0.4\nvt 0.5 0.6\nvn 0 0 2\nvn 0 3 0\n");
+    let head = format!("{SQUARE}v 2 0 0\nvt 0.1 0.2\nvt 0.3 0.4\nvt 0.5 0.6\nvn 0 0 2\nvn 0 3 0\n");
     let faces = [
         "f 1 2 3",
-        "f 1/3 2/2 3/1",
+        "f 1/3 5/2 3/1",
         "f 4//2 1//1 2//2",
         "f 2/2/2 3/3/1 4/1/2",
         "f 3/2/1 4/1/2 1/3/1",
@@ -163,7 +203,7 @@ fn mixed_faces_keep_their_own_attributes_in_any_order() {
     let none = (None, None);
     let own = [
         ([1, 2, 3], none),
-        ([1, 2, 3], (Some([3, 2, 1]), None)),
+        ([1, 5, 3], (Some([3, 2, 1]), None)),
         ([4, 1, 2], (None, Some([2, 1, 2]))),
         ([2, 3, 4], (Some([2, 3, 1]), Some([2, 1, 2]))),
         ([3, 4, 1], (Some([2, 1, 3]), Some([1, 2, 1]))),
@@ -171,7 +211,7 @@ fn mixed_faces_keep_their_own_attributes_in_any_order() {
     let square = points(&clean(
         format!("{SQUARE}f 1 2 3\nf 4 4 4\nf 1 3 4").replace("f 4 4 4\n", ""),
     ));
-    let place = [square[0], square[1], square[2], square[5]];
+    let place = [square[0], square[1], square[2], square[5], [2.0, 0.0, 0.0]];
     for turn in 0..faces.len() {
         let order: Vec<usize> = (0..faces.len()).map(|i| (i + turn) % faces.len()).collect();
         let text: Vec<&str> = order.iter().map(|&i| faces[i]).collect();
@@ -185,12 +225,12 @@ fn mixed_faces_keep_their_own_attributes_in_any_order() {
                 "{text:?}"
             );
             assert_eq!(
-                mesh.uvs[corners.clone()],
+                each(&mesh.uvs)[corners.clone()],
                 uv.map_or([None; 3], uvs),
                 "{text:?}"
             );
             assert_eq!(
-                mesh.normals[corners],
+                each(&mesh.normals)[corners],
                 normal.map_or([None; 3], normals),
                 "{text:?}"
             );
@@ -205,7 +245,7 @@ fn attributes_that_cannot_be_used_are_told_of_and_absent() {
     ));
     assert_eq!(
         codes_and_lines(&warnings),
-        [("W108", 6), ("W109", 5), ("W105", 7)]
+        [("W108", 6), ("W109", 5), ("W105", 7), ("W116", 8)]
     );
     let mesh = mesh.expect("a mesh");
     assert_eq!((mesh.triangle_count(), mesh.uvs.len()), (2, 0));
@@ -214,8 +254,8 @@ fn attributes_that_cannot_be_used_are_told_of_and_absent() {
     ));
     assert_eq!(codes_and_lines(&warnings), [("W107", 7), ("W106", 7)]);
     let mesh = mesh.expect("a mesh");
-    assert_eq!(mesh.uvs, [None; 3]);
-    assert_eq!(mesh.normals, [None, Some(DVec3::Z), None]);
+    assert_eq!(each(&mesh.uvs), [None; 3]);
+    assert_eq!(each(&mesh.normals), [None, Some(DVec3::Z), None]);
     let (mesh, warnings) = load(format!("{TRIANGLE}f 1/1 2/2 3/3"));
     assert_eq!(codes_and_lines(&warnings), [("W115", 4)]);
     assert!(mesh.expect("a mesh").uvs.is_empty());
@@ -298,133 +338,6 @@ fn files_that_are_not_there_name_themselves() {
         .texture(Path::new("nowhere/x.png"))
         .expect_err("an error");
     assert_eq!(missing.file.as_deref(), Some(Path::new("nowhere/x.png")));
-}
-
-#[test]
-fn materials_are_read_as_the_format_allows() {
-    let mtl = b"newmtl grey\nKd 0.5\nnewmtl Material #3\nKd 1 2 0.25 # bright\nKe 3 4 5\nnewmtl bare\nd 0.5\nNs 9\nKs 0 0 0\nillum 2\nnewmtl unused\nmap_Kd gone.png\n";
-    let obj = format!(
-        "mtllib m.mtl\n{TRIANGLE}f 1 2 3\nusemtl Material #3\nf 1 2 3\nusemtl grey # note\nf 1 2 3\nusemtl bar\nf 1 2 3\nusemtl bare\nf 1 2 3\n"
-    );
-    let (mesh, warnings) = Folder::of(&[("a.obj", obj.as_bytes()), ("m.mtl", mtl)]).load("a.obj");
-    let mesh = mesh.expect("a mesh");
-    assert_eq!(mesh.material, [None, Some(0), Some(1), None, Some(2)]);
-    let read: Vec<_> = mesh
-        .materials
-        .iter()
-        .map(|m| (m.name.as_str(), m.color, m.emission))
-        .collect();
-    assert_eq!(
-        read,
-        [
-            ("Material #3", [1.0, 1.0, 0.25], [3.0, 4.0, 5.0]),
-            ("grey", [0.5; 3], [0.0; 3]),
-            ("bare", [0.8; 3], [0.0; 3]),
-        ]
-    );
-    assert_eq!(
-        codes_and_lines(&warnings),
-        [("W110", 3), ("W102", 10), ("W104", 7)]
-    );
-    assert_eq!(warnings[1].hint.as_deref(), Some("did you mean \"bare\"?"));
-}
-
-#[test]
-fn impossible_material_values_are_errors_with_their_line() {
-    for (line, says) in [
-        ("Kd 0.5 x 0", "`x` is not a number"),
-        ("Kd 0.5 0.5", "`Kd` needs one or three numbers, not 2"),
-        ("Kd", "`Kd` needs one or three numbers, not 0"),
-        ("Ke -1 0 0", "`Ke` cannot be -1"),
-        ("Kd nan", "`Kd` cannot be nan"),
-        (
-            "Kd spectral a.rfl 1",
-            "`Kd spectral` is not supported: give linear red, green and blue",
-        ),
-    ] {
-        let mtl = format!("newmtl m\n{line}");
-        let obj = format!("mtllib m.mtl\n{TRIANGLE}usemtl m\nf 1 2 3");
-        let folder = Folder::of(&[("a.obj", obj.as_bytes()), ("m.mtl", mtl.as_bytes())]);
-        let errors = folder.load("a.obj").0.expect_err("an error");
-        assert_eq!(
-            (errors[0].message.as_str(), codes_and_lines(&errors)),
-            (says, vec![("E106", 2)])
-        );
-        assert!(
-            errors[0]
-                .file
-                .as_ref()
-                .is_some_and(|file| file.ends_with("m.mtl"))
-        );
-    }
-}
-
-#[test]
-fn material_files_are_found_by_any_spelling() {
-    let mtl = b"newmtl m\nKd 1 0 0";
-    for (line, codes) in [
-        ("mtllib my mat.mtl", vec![]),
-        ("mtllib .\\my mat.mtl", vec![]),
-        ("mtllib \"my mat.mtl\"", vec![]),
-        ("mtllib other.mtl my mat.mtl", vec![("W101", 1)]),
-        ("mtllib /nowhere/my mat.mtl # where?", vec![("W112", 1)]),
-        ("mtllib other.mtl", vec![("W101", 1)]),
-        ("mtllib", vec![("W102", 5)]),
-    ] {
-        let obj = format!("{line}\n{TRIANGLE}usemtl m\nf 1 2 3");
-        let folder = Folder::of(&[("a.obj", obj.as_bytes()), ("my mat.mtl", mtl)]);
-        let (mesh, warnings) = folder.load("a.obj");
-        assert_eq!(codes_and_lines(&warnings), codes, "{line}");
-        let found = !line.ends_with("other.mtl") && line != "mtllib";
-        assert_eq!(
-            mesh.expect("a mesh").materials.len(),
-            usize::from(found),
-            "{line}"
-        );
-    }
-}
-
-/// A PNG of one row.
-fn png(color: png::ColorType, depth: png::BitDepth, width: u32, data: &[u8]) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, width, 1);
-    encoder.set_color(color);
-    encoder.set_depth(depth);
-    let mut writer = encoder.write_header().expect("a header");
-    writer.write_image_data(data).expect("data");
-    writer.finish().expect("an end");
-    bytes
-}
-
-#[test]
-fn texture_lines_have_options_and_spaces() {
-    let image = png(png::ColorType::Rgb, png::BitDepth::Eight, 1, &[1, 2, 3]);
-    for (line, codes) in [
-        ("map_Kd my tex.png", vec![]),
-        ("map_Kd -s 1 1 1 -o 0 -clamp off -bm 2 my tex.png", vec![]),
-        ("map_Kd -s 2 2 1 -clamp on my tex.png", vec![("W104", 2)]),
-        ("map_Kd .\\my tex.png", vec![]),
-        ("map_Kd C:\\art\\my tex.png", vec![("W112", 2)]),
-        ("map_Kd My Tex.png", vec![("W103", 2)]),
-        ("Kd 0 0 0\nmap_Kd my tex.png", vec![("W113", 1)]),
-        ("map_Kd my tex.png\nmap_d my tex.png", vec![("W104", 3)]),
-    ] {
-        let mtl = format!("newmtl m\n{line}");
-        let obj = format!("mtllib m.mtl\n{TRIANGLE}usemtl m\nf 1 2 3");
-        let folder = Folder::of(&[
-            ("a.obj", obj.as_bytes()),
-            ("m.mtl", mtl.as_bytes()),
-            ("my tex.png", &image),
-        ]);
-        let (mesh, warnings) = folder.load("a.obj");
-        let found = !codes.contains(&("W103", 2));
-        assert_eq!(codes_and_lines(&warnings), codes, "{line}");
-        assert_eq!(
-            mesh.expect("a mesh").materials[0].texture.is_some(),
-            found,
-            "{line}"
-        );
-    }
 }
 
 #[test]

@@ -1,80 +1,126 @@
-//! Image files to textures.
+//! Image files to textures: first what the header claims, then, when there is memory for it, the texels.
 //!
 //! Deliberately absent: colour profiles and EXIF orientation, which are ignored; filtering and wrapping.
 
 use super::{Texture, codes};
 use crate::diag::Diagnostic;
-use image::{DynamicImage, ImageError, ImageFormat, ImageReader, Limits};
+use image::{ImageDecoder, ImageError, ImageFormat, ImageReader};
 use std::io::Cursor;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Texels of the largest texture: 16384 × 8192, 402 MB. A header that claims more is refused before it is decoded.
-const MAX_TEXELS: u64 = 1 << 27;
+/// Bytes per texel while colour and alpha are told apart: both together and each for itself.
+const SPLIT_BYTES: u64 = 8;
 
-/// Bytes per texel of the widest format decoded, 16-bit RGBA.
-const MAX_TEXEL_BYTES: u64 = 8;
-
-/// Decodes a PNG or JPEG image, told apart by content, to 8-bit sRGB-encoded RGB: 16-bit values are rounded, grey is
-/// repeated. Alpha is kept apart, and dropped where all of it is 255.
-///
-/// # Errors
-/// A file that is neither, is damaged, or is larger than 2^27 texels.
-pub(super) fn decode(path: &Path, bytes: &[u8]) -> Result<Texture, Diagnostic> {
-    let error = |code, says: String| Diagnostic::error(code, says).in_file(path);
-    let format = image::guess_format(bytes).ok();
-    let format = match format {
-        Some(format @ (ImageFormat::Png | ImageFormat::Jpeg)) => format,
-        Some(ImageFormat::Hdr) => {
-            let says = "an HDR image holds radiance, and cannot be a colour texture";
-            return Err(error(codes::IMAGE_FORMAT, says.into()).hint("convert it to PNG"));
-        }
-        _ => {
-            let says = "neither a PNG nor a JPEG image";
-            return Err(error(codes::IMAGE_FORMAT, says.into()).hint("convert it to PNG"));
-        }
-    };
-    let corrupt = |e: ImageError| error(codes::IMAGE_CORRUPT, format!("damaged image: {e}"));
-    let reader = || ImageReader::with_format(Cursor::new(bytes), format);
-    let (width, height) = reader().into_dimensions().map_err(corrupt)?;
-    let texels = u64::from(width) * u64::from(height);
-    if texels == 0 {
-        return Err(error(
-            codes::IMAGE_CORRUPT,
-            format!("empty image: {width} x {height}"),
-        ));
-    }
-    if texels > MAX_TEXELS {
-        let says = format!("the image is {width} x {height}: more than {MAX_TEXELS} texels");
-        return Err(error(codes::TOO_LARGE, says).hint("scale it down"));
-    }
-    let mut decoder = reader();
-    let mut limits = Limits::default();
-    limits.max_alloc = Some(MAX_TEXELS * MAX_TEXEL_BYTES);
-    decoder.limits(limits);
-    let image = decoder.decode().map_err(corrupt)?;
-    let (texels, alpha) = split(image);
-    Ok(Texture {
-        path: path.to_owned(),
-        width,
-        height,
-        texels,
-        alpha,
-    })
+/// An image of which only the header was read.
+pub(super) struct Image<'a> {
+    path: &'a Path,
+    bytes: &'a [u8],
+    format: ImageFormat,
+    width: u32,
+    height: u32,
+    has_alpha: bool,
+    /// Bytes of the texels as the file has them.
+    decoded: u64,
 }
 
-/// Colour and alpha, each in its own plane.
-fn split(image: DynamicImage) -> (Arc<[u8]>, Option<Arc<[u8]>>) {
-    if !image.color().has_alpha() {
-        return (image.into_rgb8().into_raw().into(), None);
+impl<'a> Image<'a> {
+    /// Reads the header of a PNG or JPEG image, told apart by content.
+    ///
+    /// # Errors
+    /// A file that is neither, or whose header is damaged.
+    pub(super) fn open(path: &'a Path, bytes: &'a [u8]) -> Result<Image<'a>, Diagnostic> {
+        let error = |code, says: &str| Diagnostic::error(code, says).in_file(path);
+        let unsuitable = |says| error(codes::IMAGE_FORMAT, says).hint("convert it to PNG");
+        let format = match image::guess_format(bytes) {
+            Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg)) => format,
+            Ok(ImageFormat::Hdr) => {
+                let says = "an HDR image holds radiance, and cannot be a colour texture";
+                return Err(unsuitable(says));
+            }
+            _ => return Err(unsuitable("neither a PNG nor a JPEG image")),
+        };
+        let header = reader(bytes, format).into_decoder();
+        let header = header.map_err(|e| corrupt(path, &e))?;
+        let (width, height) = header.dimensions();
+        if width == 0 || height == 0 {
+            let says = format!("empty image: {width} x {height}");
+            return Err(error(codes::IMAGE_CORRUPT, &says));
+        }
+        Ok(Image {
+            path,
+            bytes,
+            format,
+            width,
+            height,
+            has_alpha: header.color_type().has_alpha(),
+            decoded: header.total_bytes(),
+        })
     }
-    let rgba = image.into_rgba8().into_raw();
-    let (texels, _) = rgba.as_chunks::<4>();
-    let mut rgb = Vec::with_capacity(3 * texels.len());
-    for [r, g, b, _] in texels {
-        rgb.extend_from_slice(&[*r, *g, *b]);
+
+    /// What it claims to be.
+    pub(super) fn says(&self) -> String {
+        format!("the image of {} x {} texels", self.width, self.height)
     }
-    let transparent = texels.iter().any(|[.., a]| *a != u8::MAX);
-    let alpha = || texels.iter().map(|[.., a]| *a).collect();
-    (rgb.into(), transparent.then(alpha))
+
+    /// Bytes of the texture.
+    pub(super) fn kept(&self) -> u64 {
+        self.texels()
+            .saturating_mul(if self.has_alpha { 4 } else { 3 })
+    }
+
+    /// Bytes while it is decoded.
+    pub(super) fn passing(&self) -> u64 {
+        let split = self.texels().saturating_mul(SPLIT_BYTES);
+        self.decoded.saturating_add(split)
+    }
+
+    fn texels(&self) -> u64 {
+        u64::from(self.width) * u64::from(self.height)
+    }
+
+    /// Decodes to 8-bit sRGB-encoded RGB: 16-bit values are rounded, grey is repeated. Alpha is kept if the image has one
+    /// that is not opaque everywhere.
+    ///
+    /// # Errors
+    /// A damaged file.
+    pub(super) fn decode(self) -> Result<Texture, Diagnostic> {
+        let image = reader(self.bytes, self.format).decode();
+        let image = image.map_err(|e| corrupt(self.path, &e))?;
+        let (texels, alpha) = if self.has_alpha {
+            split(&image.into_rgba8())
+        } else {
+            (image.into_rgb8().into_raw(), None)
+        };
+        Ok(Texture {
+            path: self.path.to_owned(),
+            width: self.width,
+            height: self.height,
+            texels: texels.into(),
+            alpha,
+        })
+    }
+}
+
+/// Without the crate's own limits: memory is charged before an image is decoded.
+fn reader(bytes: &[u8], format: ImageFormat) -> ImageReader<Cursor<&[u8]>> {
+    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
+    reader.no_limits();
+    reader
+}
+
+fn corrupt(path: &Path, error: &ImageError) -> Diagnostic {
+    Diagnostic::error(codes::IMAGE_CORRUPT, format!("damaged image: {error}")).in_file(path)
+}
+
+/// Colour, and alpha unless it is opaque everywhere.
+fn split(image: &[u8]) -> (Vec<u8>, Option<Arc<[u8]>>) {
+    let texels = image.as_chunks::<4>().0;
+    let colors = texels
+        .iter()
+        .flat_map(|[r, g, b, _]| [*r, *g, *b])
+        .collect();
+    let opaque = texels.iter().all(|texel| texel[3] == u8::MAX);
+    let alpha = || texels.iter().map(|texel| texel[3]).collect();
+    (colors, (!opaque).then(alpha))
 }

@@ -5,14 +5,15 @@ use super::extract::{Extracted, MeshItem};
 use super::instances::{instance, maps};
 use super::lights::{self, Collector};
 use super::materials::{Means, Tables};
-use super::meshes::{Keep, LocalMesh, MeshKey, Part, Soup, corner_normals, slot};
+use super::meshes::{Keep, LocalMesh, MeshKey, Part, Soup, slot, smooth_normals};
 use super::rebase::to_scene;
 use super::spheres;
-use crate::asset::AssetStore;
+use crate::asset::{AssetStore, PerCorner};
 use crate::flat::{
     Fresnel, Geometry, Instance, LightPlace, Lights, Material, MaterialId, Rebase, Spheres, Texture,
 };
 use crate::math::{Aabb, DAffine3, DVec3, Vec3};
+use crate::world::Normals;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
@@ -21,7 +22,7 @@ use std::time::{Duration, Instant};
 /// What is kept from frame to frame: functions of a mesh and its normals, or of a texture, alone.
 #[derive(Default)]
 pub(crate) struct Cache {
-    normals: BTreeMap<MeshKey, Option<Arc<[DVec3]>>>,
+    smooth: BTreeMap<MeshKey, PerCorner<DVec3>>,
     local: BTreeMap<MeshKey, Arc<LocalMesh>>,
     means: Means,
 }
@@ -183,7 +184,7 @@ impl Flattener<'_> {
         let normals = self.cache.normals(item, self.context.store);
         let part = Part {
             mesh,
-            normals: normals.as_deref(),
+            normals,
             to: to_scene(&item.look.pose, &self.context.rebase),
             keep: Keep {
                 normals: smooth,
@@ -238,21 +239,32 @@ impl Flattener<'_> {
 }
 
 impl Cache {
-    fn normals(&mut self, item: &MeshItem, store: &AssetStore) -> Option<Arc<[DVec3]>> {
-        let compute = || corner_normals(store.mesh(item.mesh), item.normals).map(Arc::from);
-        self.normals
-            .entry(item.key())
-            .or_insert_with(compute)
-            .clone()
+    /// Unit corner normals of an item; `None` where every triangle is flat.
+    fn normals<'a>(
+        &'a mut self,
+        item: &MeshItem,
+        store: &'a AssetStore,
+    ) -> Option<&'a PerCorner<DVec3>> {
+        let mesh = store.mesh(item.mesh);
+        match item.normals {
+            Normals::Flat => None,
+            Normals::File if mesh.normals.is_empty() && mesh.faceted => None,
+            Normals::File if mesh.normals.all() => Some(&mesh.normals),
+            normals => {
+                let smooth = self.smooth.entry(item.key());
+                Some(smooth.or_insert_with(|| smooth_normals(mesh, normals)))
+            }
+        }
     }
 
     fn local(&mut self, item: &MeshItem, context: &Context) -> Arc<LocalMesh> {
-        let normals = self.normals(item, context.store);
+        if let Some(known) = self.local.get(&item.key()) {
+            return known.clone();
+        }
         let mesh = context.store.mesh(item.mesh);
-        let compute = || {
-            let local = LocalMesh::new(mesh, normals.as_deref(), context.keep, context.accel);
-            Arc::new(local)
-        };
-        self.local.entry(item.key()).or_insert_with(compute).clone()
+        let normals = self.normals(item, context.store);
+        let local = Arc::new(LocalMesh::new(mesh, normals, context.keep, context.accel));
+        self.local.insert(item.key(), local.clone());
+        local
     }
 }

@@ -1,7 +1,8 @@
 //! Meshes to triangles: flattened into scene units, or kept in local units for their instances.
 
 use super::rebase::{self, to_local};
-use crate::asset::{Mesh, MeshId};
+use crate::asset::normals::smooth;
+use crate::asset::{Mesh, MeshId, PerCorner};
 use crate::flat::{self, ObjectId, Rebase, Shading};
 use crate::math::{DAffine3, DMat3, DVec2, DVec3, Vec2, Vec3, unit};
 use crate::world::Normals;
@@ -25,22 +26,13 @@ impl MeshKey {
     }
 }
 
-/// Unit corner normals in the mesh's own space; `None` where every triangle is flat.
-pub(crate) fn corner_normals(mesh: &Mesh, normals: Normals) -> Option<Vec<DVec3>> {
-    use crate::asset::normals::smooth;
+/// Unit corner normals in the mesh's own space that are not those of its file as they stand.
+pub(crate) fn smooth_normals(mesh: &Mesh, normals: Normals) -> PerCorner<DVec3> {
     match normals {
-        Normals::Flat => None,
-        Normals::Smooth { angle_deg } => Some(smooth(mesh, angle_deg)),
-        Normals::File if !mesh.normals.is_empty() && mesh.normals.iter().all(Option::is_some) => {
-            Some(mesh.normals.iter().copied().flatten().collect())
-        }
-        Normals::File if mesh.normals.is_empty() && mesh.faceted => None,
-        Normals::File => {
-            let mut corners = smooth(mesh, Normals::DEFAULT_ANGLE_DEG);
-            for (corner, file) in corners.iter_mut().zip(&mesh.normals) {
-                *corner = file.unwrap_or(*corner);
-            }
-            Some(corners)
+        Normals::Smooth { angle_deg } => smooth(mesh, angle_deg),
+        Normals::File | Normals::Flat => {
+            let smooth = smooth(mesh, Normals::DEFAULT_ANGLE_DEG);
+            mesh.normals.or(&smooth)
         }
     }
 }
@@ -55,8 +47,8 @@ pub(crate) struct Soup {
 /// What to append to a [`Soup`], and how.
 pub(crate) struct Part<'a> {
     pub(crate) mesh: &'a Mesh,
-    /// See [`corner_normals`].
-    pub(crate) normals: Option<&'a [DVec3]>,
+    /// Unit normals in the mesh's own space; `None` where every triangle is flat.
+    pub(crate) normals: Option<&'a PerCorner<DVec3>>,
     /// From the mesh's own space to that of the soup.
     pub(crate) to: DAffine3,
     /// Which cold arrays the soup keeps.
@@ -90,29 +82,35 @@ impl Soup {
             .map(|p| to.transform_point3(*p))
             .collect();
         let cofactor = cofactor(&to.matrix3);
+        let normals = part.normals.map_or(&[][..], PerCorner::values);
+        let turned: Vec<Option<Vec3>> = normals
+            .iter()
+            .map(|normal| unit(cofactor * *normal).map(|normal| normal.as_vec3()))
+            .collect();
         let order = if mirrors(&to.matrix3) {
             [0, 2, 1]
         } else {
             [0, 1, 2]
         };
+        self.reserve(mesh.triangle_count(), keep);
         for prim in 0..mesh.triangle_count() {
             let corners = order.map(|k| 3 * prim + k);
             let vertices = corners.map(|c| points[mesh.corners[c] as usize]);
             self.triangles.push(vertices.map(|v| v.as_vec3()));
             if keep.normals {
-                let geometric = geometric_normal(&vertices);
                 let normal = |c: usize| {
-                    let authored = part.normals.and_then(|normals| unit(cofactor * normals[c]));
-                    authored.unwrap_or(geometric).as_vec3().to_array()
+                    let authored = part.normals.and_then(|normals| turned[normals.index(c)?]);
+                    authored.unwrap_or_else(|| geometric_normal(&vertices).as_vec3())
                 };
-                self.shading.normals.corner.extend(corners.map(normal));
+                let normals = corners.map(|c| normal(c).to_array());
+                self.shading.normals.corner.extend(normals);
             }
             if keep.uvs {
-                let uvs = corners.map(|c| rounded(mesh.uvs.get(c).copied().flatten()));
+                let uvs = corners.map(|c| rounded(mesh.uvs.get(c)));
                 self.shading.uvs.extend(uvs);
             }
             if keep.uvs1 {
-                let uvs = corners.map(|c| rounded(mesh.uvs1.get(c).copied().flatten()));
+                let uvs = corners.map(|c| rounded(mesh.uvs1.get(c)));
                 self.shading.uvs1.extend(uvs);
             }
             if keep.colors {
@@ -123,6 +121,19 @@ impl Soup {
             self.shading.file_prim.push(prim);
             self.shading.material.push(material(prim));
             self.shading.object.extend(object);
+        }
+    }
+
+    fn reserve(&mut self, triangles: usize, keep: &Keep) {
+        self.triangles.reserve(triangles);
+        let shading = &mut self.shading;
+        shading.file_prim.reserve(triangles);
+        shading.material.reserve(triangles);
+        if keep.normals {
+            shading.normals.corner.reserve(3 * triangles);
+        }
+        if keep.uvs {
+            shading.uvs.reserve(3 * triangles);
         }
     }
 }
@@ -147,7 +158,7 @@ impl LocalMesh {
     /// Builds the geometry; its materials are slots, see [`slot`].
     pub(crate) fn new(
         mesh: &Mesh,
-        normals: Option<&[DVec3]>,
+        normals: Option<&PerCorner<DVec3>>,
         keep: Keep,
         accel: super::Accel,
     ) -> LocalMesh {
@@ -163,12 +174,13 @@ impl LocalMesh {
             },
         };
         soup.append(&part, None, |prim| slot(mesh, prim) as u32);
-        let mut points: Vec<Vec3> = soup.triangles.iter().flatten().copied().collect();
-        points.sort_by(|a, b| {
-            let by = |k: usize| a[k].total_cmp(&b[k]);
-            by(0).then(by(1)).then(by(2))
-        });
-        points.dedup();
+        let mut used = vec![false; mesh.positions.len()];
+        for corner in &mesh.corners {
+            used[*corner as usize] = true;
+        }
+        let used = mesh.positions.iter().zip(used).filter(|(_, used)| *used);
+        let points = used.map(|(p, _)| part.to.transform_point3(*p).as_vec3());
+        let points = points.collect();
         let primitives = super::bvh::Primitives {
             triangles: &soup.triangles,
             ..Default::default()

@@ -346,7 +346,7 @@ fn is_textured(material: &MaterialDesc) -> bool {
 /// What there is to say about a textured mesh whose file has no texture coordinates: an error where the scene's own
 /// material is textured, a warning where the file's is.
 fn missing_uv(desc: &SceneDesc, entity: usize, mesh: &Mesh) -> Option<Diagnostic> {
-    if mesh.uvs.iter().any(Option::is_some) {
+    if mesh.uvs.any() {
         return None;
     }
     let Placed { value, at, len } = desc.entities.get(entity)?;

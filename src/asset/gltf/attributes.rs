@@ -2,7 +2,7 @@
 
 use super::accessor::Elements;
 use super::source::Source;
-use crate::asset::codes;
+use crate::asset::{PerCorner, codes};
 use crate::diag::Diagnostic;
 use crate::math::{DVec2, DVec3};
 use gltf::Semantic;
@@ -34,8 +34,8 @@ impl Attributes {
     pub(super) fn bytes_per_triangle(&self) -> usize {
         let corner = size_of::<u32>()
             + size_of::<DVec3>()
-            + self.normals.map_or(0, |_| size_of::<Option<DVec3>>())
-            + self.uvs.iter().flatten().count() * size_of::<Option<DVec2>>()
+            + self.normals.map_or(0, |_| PerCorner::<DVec3>::BYTES)
+            + self.uvs.iter().flatten().count() * PerCorner::<DVec2>::BYTES
             + self.colors.map_or(0, |_| size_of::<[f32; 3]>());
         3 * corner + size_of::<Option<u32>>()
     }

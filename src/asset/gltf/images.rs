@@ -78,9 +78,12 @@ pub(super) fn read(
             Err(error) => errors.push(error),
         }
     }
-    let name = |one: &Encoded| one.file.clone().unwrap_or_else(|| source.path.clone());
-    let decode = |one: &Encoded| texture::decode(&name(one), &one.bytes);
-    let decoded: Vec<_> = encoded.par_iter().map(decode).collect();
+    let opened: Vec<_> = encoded
+        .iter()
+        .map(|one| loader.open_image(one.file.as_ref().unwrap_or(&source.path), &one.bytes))
+        .collect();
+    let decode = |image: Result<texture::Image<'_>, Diagnostic>| image?.decode();
+    let decoded: Vec<_> = opened.into_par_iter().map(decode).collect();
     for (one, decoded) in encoded.iter().zip(decoded) {
         match decoded {
             Ok(texture) => images.keep_new(loader, wanted, one, texture),

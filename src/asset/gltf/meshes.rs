@@ -327,7 +327,7 @@ impl<'a> Builder<'a> {
                 let read = stream.as_ref().and_then(|uvs| uvs.at(vertex));
                 let finite = read.filter(|[u, v]: &[f64; 2]| u.is_finite() && v.is_finite());
                 // In glTF v points down (section 3.8.1).
-                uvs.push(finite.map(|[u, v]| DVec2::new(u, 1.0 - v)));
+                uvs.extend([finite.map(|[u, v]| DVec2::new(u, 1.0 - v))]);
             }
         }
         if self.keep.colors {

@@ -16,10 +16,6 @@ use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-/// Bytes of the triangles of the largest file. Many primitives may share one accessor, so that a small file may ask for
-/// any number of triangles.
-const MAX_BYTES: u64 = 1 << 32;
-
 /// Reads a glTF file. Warnings go to the loader.
 ///
 /// # Errors
@@ -45,9 +41,9 @@ fn model(
     let used: BTreeSet<usize> = nodes.iter().filter_map(|node| node.mesh).collect();
     let bytes = used.iter().map(|&index| meshes::bytes(source, index));
     let bytes = bytes.fold(0, u64::saturating_add);
-    if bytes > MAX_BYTES {
-        return Err(vec![too_large(bytes)]);
-    }
+    // Many primitives may share one accessor: a small file may ask for any number of triangles.
+    let room = loader.charge(bytes, "what the triangles decode to", &source.path);
+    room.map_err(|error| vec![error.pointer("/meshes")])?;
     let mut shaped = shape(source, &used, notes)?;
     let looks = shaped.values().flat_map(|shaped| &shaped.looks);
     let looks: BTreeSet<Look> = looks.copied().collect();
@@ -72,13 +68,6 @@ fn model(
         notes.tell(nothing());
     }
     Ok(model)
-}
-
-fn too_large(bytes: u64) -> Diagnostic {
-    let says = format!("the file's triangles would take {bytes} bytes, more than {MAX_BYTES}");
-    Diagnostic::error(codes::TOO_LARGE, says)
-        .pointer("/meshes")
-        .hint("split the file, or simplify its meshes")
 }
 
 /// The triangles of the meshes in use, several meshes at a time.

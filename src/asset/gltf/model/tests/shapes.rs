@@ -128,10 +128,10 @@ fn interleaved_and_separate_attributes_are_the_same() {
     let (a, b) = (separate.mesh(), together.mesh());
     assert_eq!(triangles(a), triangles(b));
     assert_eq!((&a.normals, &a.uvs), (&b.normals, &b.uvs));
-    assert_eq!(b.normals, [Some(DVec3::Z); 3]);
+    assert_eq!(b.normals.iter().collect::<Vec<_>>(), [Some(DVec3::Z); 3]);
     // v up: glTF has 0 at the top.
     assert_eq!(
-        b.uvs,
+        b.uvs.iter().collect::<Vec<_>>(),
         [[0.0, 1.0], [1.0, 1.0], [0.0, 0.0]].map(|uv| Some(DVec2::from_array(uv)))
     );
 }
@@ -256,7 +256,7 @@ fn primitives_are_joined_and_those_without_normals_are_flat() {
     let mut draft = Draft::triangle();
     let first = draft.primitive().clone();
     assert!(draft.clean().mesh().faceted);
-    assert_eq!(draft.clean().mesh().normals, []);
+    assert!(draft.clean().mesh().normals.is_empty());
     let normals = draft.floats(&[[0.6, 0.0, 0.8]; 3]);
     draft.attribute("NORMAL", normals);
     let second = draft.primitive().clone();
@@ -271,8 +271,9 @@ fn primitives_are_joined_and_those_without_normals_are_flat() {
     let names: Vec<&str> = mesh.materials.iter().map(|m| m.name.as_str()).collect();
     assert_eq!(names, ["default", "a"]);
     assert!(!mesh.faceted);
-    assert_eq!(mesh.normals[..3], [Some(DVec3::Z); 3]);
-    let authored = mesh.normals[3].expect("a normal");
+    let normals: Vec<_> = mesh.normals.iter().collect();
+    assert_eq!(normals[..3], [Some(DVec3::Z); 3]);
+    let authored = normals[3].expect("a normal");
     assert!(authored.distance(DVec3::new(0.6, 0.0, 0.8)) < 1e-7);
 }
 
@@ -282,7 +283,7 @@ fn a_normal_that_is_none_is_absent() {
     let normals = draft.floats(&[[0.0; 3], [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]]);
     draft.attribute("NORMAL", normals);
     let read = draft.read().expect("a model");
-    assert_eq!(read.mesh().normals, [None, Some(DVec3::Z), Some(DVec3::Z)]);
+    assert_eq!(read.mesh().normals.iter().collect::<Vec<_>>(), [None, Some(DVec3::Z), Some(DVec3::Z)]);
     assert!(read.codes().contains(&"W106"), "{:?}", read.warnings);
 }
 
@@ -293,7 +294,7 @@ fn a_small_file_that_asks_for_billions_of_triangles_is_refused() {
     let primitive = draft.primitive().clone();
     draft.root["meshes"][0]["primitives"] = vec![primitive; 4000].into();
     let errors = draft.read().map(|_| ()).expect_err("an error");
-    assert_eq!(errors[0].code, "E109", "{errors:?}");
+    assert_eq!(errors[0].code, "E111", "{errors:?}");
 }
 
 #[test]
