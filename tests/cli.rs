@@ -248,6 +248,26 @@ fn a_render_leaves_its_file_its_path_and_a_summary() {
     assert_eq!(stats["spp"], 3);
     assert_eq!(stats["samples"], 40 * 24 * 3);
     assert_eq!(stats["stopped"], false);
+    assert_eq!(stats["bytes"]["files"], 0);
+    assert!(stats["bytes"]["buffers"].as_u64() > Some(0));
+}
+
+#[test]
+fn files_may_take_only_so_much_memory() {
+    let folder = Folder::new("memory");
+    let mesh = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{}", "f 1 2 3\n".repeat(100));
+    fs::write(folder.path("large.obj"), mesh).expect("writable");
+    let entity = "entities: [(shape: Mesh(\"large.obj\")),";
+    let scene = SCENE.replacen("entities: [", entity, 1);
+    fs::write(folder.path("scene.ron"), scene).expect("writable");
+    for command in ["render", "check", "explain"] {
+        let refused = folder.run(&[command, "scene.ron", "--max-memory", "1K"]);
+        expect(&refused, 65, &["E111", "1.0 KiB", "--max-memory 1M"]);
+        let done = folder.run(&[command, "scene.ron", "--max-memory", "1M"]);
+        expect(&done, 0, &[]);
+        let wrong = folder.run(&[command, "scene.ron", "--max-memory", "lots"]);
+        expect(&wrong, 2, &["512M"]);
+    }
 }
 
 #[test]

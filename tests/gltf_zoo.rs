@@ -116,8 +116,8 @@ fn compare(name: &str, file: &Path, expected: &Value) -> Result<(), String> {
     for (mesh, to_world) in instances(&mut spawned) {
         let mesh = spawned.assets.mesh(mesh);
         triangles += mesh.triangle_count();
-        let complete = |uvs: &&[Option<_>]| uvs.iter().all(Option::is_some);
-        with_uv += mesh.uvs.chunks(3).filter(complete).count();
+        let complete = |prim: &usize| (0..3).all(|k| mesh.uvs.get(3 * prim + k).is_some());
+        with_uv += (0..mesh.triangle_count()).filter(complete).count();
         for position in &mesh.positions {
             let point = to_world.transform_point3(*position);
             bounds = [bounds[0].min(point), bounds[1].max(point)];
@@ -311,10 +311,11 @@ fn box_textured_is_as_its_screenshot_shows_it() {
     };
     let mesh = spawned.assets.mesh(mesh);
     let mut sides = 0;
-    for (corners, uvs) in mesh.corners.chunks(3).zip(mesh.uvs.chunks(3)) {
+    for prim in 0..mesh.triangle_count() {
         let [a, b, c] = [0, 1, 2].map(|k| {
-            let position = mesh.positions[corners[k] as usize];
-            (to_world.transform_point3(position), uvs[k].expect("a uv"))
+            let position = mesh.positions[mesh.corners[3 * prim + k] as usize];
+            let uv = mesh.uvs.get(3 * prim + k).expect("a uv");
+            (to_world.transform_point3(position), uv)
         });
         let (ab, ac) = (b.0 - a.0, c.0 - a.0);
         let (uv_ab, uv_ac) = (b.1 - a.1, c.1 - a.1);

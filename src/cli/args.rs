@@ -123,6 +123,9 @@ pub(crate) struct RenderArgs {
     /// Refuse to render (65) where `luxel check` has warnings
     #[arg(long)]
     pub(crate) strict: bool,
+    /// Most memory that the files of the scene may take: 512M, 8G
+    #[arg(long, value_name = "SIZE", default_value = "4G", value_parser = parse_memory)]
+    pub(crate) max_memory: u64,
     /// Write what the render cost as JSON
     #[arg(long, value_name = "FILE.json")]
     pub(crate) stats: Option<PathBuf>,
@@ -151,6 +154,9 @@ pub(crate) struct CheckArgs {
     /// Exit with 65 if there are warnings
     #[arg(long)]
     pub(crate) strict: bool,
+    /// Most memory that the files of the scene may take: 512M, 8G
+    #[arg(long, value_name = "SIZE", default_value = "4G", value_parser = parse_memory)]
+    pub(crate) max_memory: u64,
     /// List every code with its meaning
     #[arg(long, conflicts_with = "file")]
     pub(crate) codes: bool,
@@ -161,6 +167,9 @@ pub(crate) struct CheckArgs {
 pub(crate) struct InspectArgs {
     /// The scene file (RON)
     pub(crate) scene: PathBuf,
+    /// Most memory that the files of the scene may take: 512M, 8G
+    #[arg(long, value_name = "SIZE", default_value = "4G", value_parser = parse_memory)]
+    pub(crate) max_memory: u64,
     /// Print JSON on stdout
     #[arg(long)]
     pub(crate) json: bool,
@@ -348,6 +357,22 @@ fn parse_time(text: &str) -> Result<Duration, String> {
     Ok(Duration::from_secs_f64(seconds))
 }
 
+/// Bytes; the suffixes are powers of 1024.
+fn parse_memory(text: &str) -> Result<u64, String> {
+    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let unit = match text[digits.len()..].to_ascii_uppercase().as_str() {
+        "K" | "KIB" => Some(10),
+        "M" | "MIB" => Some(20),
+        "G" | "GIB" => Some(30),
+        "T" | "TIB" => Some(40),
+        _ => None,
+    };
+    let bytes = unit.and_then(|unit| digits.parse::<u64>().ok()?.checked_mul(1 << unit));
+    bytes
+        .filter(|&bytes| bytes > 0)
+        .ok_or_else(|| "write a whole number above 0 with its unit, e.g. 512M or 8G".to_owned())
+}
+
 fn parse_exposure(text: &str) -> Result<f64, String> {
     let stops: Option<f64> = text.parse().ok();
     stops
@@ -395,6 +420,26 @@ mod tests {
             "", "30", "s", "-1s", "0s", "NaNs", "infs", "1e99h", "3 s x", "5d", "1e400s",
         ] {
             assert!(parse_time(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn memory_has_units() {
+        assert_eq!(parse_memory("512M"), Ok(512 << 20));
+        assert_eq!(parse_memory("8GiB"), Ok(8 << 30));
+        assert_eq!(parse_memory("1k"), Ok(1024));
+        for bad in [
+            "",
+            "8",
+            "G",
+            "-1G",
+            "0G",
+            "1.5G",
+            "99999999T",
+            "8GB x",
+            "1X",
+        ] {
+            assert!(parse_memory(bad).is_err(), "{bad}");
         }
     }
 

@@ -4,7 +4,6 @@ use super::args::CheckArgs;
 use super::contents::Contents;
 use super::failure::Failure;
 use super::{diagnostics, load, print_result, say};
-use crate::asset::Loader;
 use crate::check::{all_codes, check_mesh};
 use crate::diag::Diagnostic;
 use serde_json::{Value, json};
@@ -16,12 +15,12 @@ pub(crate) fn run(args: &CheckArgs) -> Result<(), Failure> {
         return print_codes(args.json);
     };
     let (contents, checked) = if is_mesh(path) {
-        match mesh_file(path) {
+        match mesh_file(path, args.max_memory) {
             Ok((contents, warnings)) => (Some(contents), Ok(warnings)),
             Err(failure) => (None, Err(failure)),
         }
     } else {
-        (None, load::scene(path).map(|(_, warnings)| warnings))
+        (None, load::scene(path, args.max_memory).map(|(_, warnings)| warnings))
     };
     if args.json {
         return answer(args, contents.as_ref(), checked);
@@ -90,11 +89,11 @@ fn is_mesh(path: &Path) -> bool {
 }
 
 /// Reads a mesh file with all that it names.
-fn mesh_file(path: &Path) -> Result<(Contents, Vec<Diagnostic>), Failure> {
+fn mesh_file(path: &Path, max_memory: u64) -> Result<(Contents, Vec<Diagnostic>), Failure> {
     if let Err(e) = std::fs::metadata(path) {
         return Err(Failure::no_input(path, &e));
     }
-    let mut loader = Loader::new();
+    let (mut loader, _patience) = load::loader(max_memory);
     let is_obj = path
         .extension()
         .is_some_and(|s| s.eq_ignore_ascii_case("obj"));

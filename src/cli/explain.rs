@@ -15,7 +15,7 @@ const FRAME: u32 = 0;
 
 /// Builds the scene's first frame and describes it.
 pub(crate) fn run(args: &InspectArgs) -> Result<(), Failure> {
-    let (loaded, _) = load::scene(&args.scene)?;
+    let (loaded, _) = load::scene(&args.scene, args.max_memory)?;
     let settings = Settings::of_scene(&loaded.desc);
     let desc = loaded.desc.clone();
     let mut renderer = loaded.renderer(settings)?;

@@ -1,7 +1,8 @@
 //! A scene file to what the renderer takes: description, world, files.
 
 use super::failure::Failure;
-use crate::asset::{AssetStore, Loader};
+use super::patience::Patience;
+use crate::asset::{AssetStore, Limits, Loader};
 use crate::check::{check, check_light, check_world};
 use crate::diag::Diagnostic;
 use crate::render::{Renderer, Settings};
@@ -20,12 +21,16 @@ pub(crate) struct Loaded {
     assets: AssetStore,
 }
 
-/// Reads a scene and every file that it names. The warnings come with it, the errors instead of it.
-pub(crate) fn scene(path: &Path) -> Result<(Loaded, Vec<Diagnostic>), Failure> {
-    let read = scene::load(path).map_err(|e| refuse(path, e))?;
+/// Reads a scene and every file that it names, which may take `max_memory` bytes. The warnings come with it, the errors
+/// instead of it.
+pub(crate) fn scene(path: &Path, max_memory: u64) -> Result<(Loaded, Vec<Diagnostic>), Failure> {
+    let read = scene::load(path).map_err(|e| refuse(path, e, max_memory))?;
     let mut found = read.warnings;
     found.extend(check(&read.desc));
-    match world::spawn(&read.desc, Loader::new()) {
+    let (loader, patience) = loader(max_memory);
+    let spawned = world::spawn(&read.desc, loader);
+    drop(patience);
+    match spawned {
         Ok(spawned) => {
             found.extend(check_world(&read.desc, &spawned.world, &spawned.assets));
             found.extend(spawned.warnings);
@@ -44,15 +49,23 @@ pub(crate) fn scene(path: &Path) -> Result<(Loaded, Vec<Diagnostic>), Failure> {
     }
 }
 
+/// A loader whose files may take `max_memory` bytes, and what tells of one that takes its time.
+pub(crate) fn loader(max_memory: u64) -> (Loader, Patience) {
+    let loader = Loader::with_limits(Limits { memory: max_memory });
+    let patience = Patience::start(loader.reading());
+    (loader, patience)
+}
+
 /// Why a scene file named on the command line was not read.
-fn refuse(path: &Path, error: LoadError) -> Failure {
+fn refuse(path: &Path, error: LoadError, max_memory: u64) -> Failure {
     match error {
         LoadError::Missing(_) => Failure::no_input(path, &"no such file"),
         LoadError::Unreadable { source, .. } => Failure::no_input(path, &source),
         LoadError::Invalid(mut found, desc) => {
             // An error in the scene hides none in the files.
             if let Some(desc) = desc {
-                found.extend(world::open_files(&desc, Loader::new()));
+                let (loader, _patience) = loader(max_memory);
+                found.extend(world::open_files(&desc, loader));
             }
             Failure::scene(found)
         }
@@ -63,6 +76,11 @@ impl Loaded {
     /// Whether there are lights without extent, which no ray can hit.
     pub(crate) fn has_punctual_lights(&self) -> bool {
         self.world.query::<&Light>().iter().next().is_some()
+    }
+
+    /// Bytes that its files take in memory.
+    pub(crate) fn memory(&self) -> u64 {
+        self.assets.memory()
     }
 
     /// Starts the renderer's threads.

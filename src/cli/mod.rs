@@ -16,6 +16,7 @@ mod frames;
 mod interrupt;
 mod load;
 mod output;
+mod patience;
 mod progress;
 mod render;
 mod start;

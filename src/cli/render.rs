@@ -26,7 +26,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
     }
     let control = Arc::new(Control::default());
     interrupt::listen(&control);
-    let (loaded, warnings) = load::scene(&args.scene)?;
+    let (loaded, warnings) = load::scene(&args.scene, args.max_memory)?;
     // If nobody listens on stderr, so be it.
     let _ = diagnostics::print(&warnings);
     if args.strict {
@@ -37,6 +37,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
     }
     let settings = settings(args, &loaded.desc);
     let time = settings.time;
+    let files = loaded.memory();
     let mut renderer = loaded.renderer(settings)?;
     let load = start.elapsed();
     let rendering = {
@@ -61,6 +62,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
         film: &rendering.film,
         stats: rendering.stats,
         load,
+        files,
         write: writing.elapsed(),
         isa: isa(args).level().to_string(),
     };

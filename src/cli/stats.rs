@@ -1,5 +1,6 @@
 //! What a render cost, as a line for people and as JSON for scripts.
 
+use super::patience::megabytes;
 use super::progress::words;
 use crate::film::Film;
 use crate::render::Stats;
@@ -16,6 +17,8 @@ pub(crate) struct Account<'a> {
     pub(crate) stats: Stats,
     /// Reading the scene and its files.
     pub(crate) load: Duration,
+    /// Bytes that the scene's files take in memory.
+    pub(crate) files: u64,
     /// Encoding and writing the image.
     pub(crate) write: Duration,
     /// The kernels' instruction set.
@@ -23,11 +26,12 @@ pub(crate) struct Account<'a> {
 }
 
 impl Account<'_> {
-    /// One line: `room.png · 512×512 · 64 spp · 3.1 s · 12.3 Mrays/s · extract 100 µs, flatten 2 ms, tree 8 ms`.
+    /// One line: `room.png · 512×512 · 64 spp · 3.1 s · 12.3 Mrays/s · extract 100 µs, flatten 2 ms, tree 8 ms · 12 MB`,
+    /// the last being what the files and the buffers take.
     pub(crate) fn line(&self) -> String {
         let stages = &self.stats.stages;
         format!(
-            "{} · {}×{} · {} spp · {} · {:.1} Mrays/s · extract {}, flatten {}, tree {}",
+            "{} · {}×{} · {} spp · {} · {:.1} Mrays/s · extract {}, flatten {}, tree {} · {}",
             self.output,
             self.film.width(),
             self.film.height(),
@@ -37,6 +41,7 @@ impl Account<'_> {
             words(stages.extract),
             words(stages.flatten),
             words(stages.bvh),
+            megabytes(self.files + self.stats.bytes as u64),
         )
     }
 
@@ -55,6 +60,7 @@ impl Account<'_> {
             "isa": self.isa,
             "rays": { "closest": stats.closest_rays, "occlusion": stats.occlusion_rays },
             "mrays_per_second": stats.mrays_per_second(),
+            "bytes": { "files": self.files, "buffers": stats.bytes },
             "seconds": {
                 "load": self.load.as_secs_f64(),
                 "extract": stages.extract.as_secs_f64(),

@@ -83,6 +83,7 @@ impl Renderer {
         let deadline = self.settings.time.map(|time| Instant::now() + time);
         let (scene, times) = self.build(frame);
         let (film, mut stats) = self.trace(&scene, control, deadline);
+        stats.bytes = times.bytes;
         stats.stages = Stages {
             extract: times.extract,
             flatten: times.flatten,

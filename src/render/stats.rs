@@ -24,6 +24,8 @@ pub struct Stats {
     pub closest_rays: u64,
     /// Occlusion tests.
     pub occlusion_rays: u64,
+    /// Bytes of all buffers that tracing read.
+    pub bytes: usize,
     /// Threads.
     pub threads: usize,
     /// Samples that every pixel has.
