@@ -358,7 +358,7 @@ fn parse_time(text: &str) -> Result<Duration, String> {
 }
 
 /// Bytes; the suffixes are powers of 1024.
-fn parse_memory(text: &str) -> Result<u64, String> {
+pub(crate) fn parse_memory(text: &str) -> Result<u64, String> {
     let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
     let unit = match text[digits.len()..].to_ascii_uppercase().as_str() {
         "K" | "KIB" => Some(10),

@@ -1,6 +1,6 @@
 //! The arguments of `turntable` and `convert`.
 
-use super::args::parse_size;
+use super::args::{parse_memory, parse_size};
 use crate::author::Up;
 use crate::scene::RenderDesc;
 use clap::{Args, ValueEnum, value_parser};
@@ -44,6 +44,9 @@ pub(crate) struct TurntableArgs {
     /// Write the scene too, as a start for one of your own
     #[arg(long, value_name = "FILE.ron")]
     pub(crate) scene: Option<PathBuf>,
+    /// Most memory that the files may take: 512M, 8G
+    #[arg(long, value_name = "SIZE", default_value = "4G", value_parser = parse_memory)]
+    pub(crate) max_memory: u64,
     /// Worker threads [default: all that the machine offers]
     #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
@@ -64,6 +67,9 @@ pub(crate) struct ConvertArgs {
     /// The scene file to write [default: MESH.ron in this folder]
     #[arg(short, long, value_name = "FILE.ron")]
     pub(crate) output: Option<PathBuf>,
+    /// Most memory that the files may take: 512M, 8G
+    #[arg(long, value_name = "SIZE", default_value = "4G", value_parser = parse_memory)]
+    pub(crate) max_memory: u64,
 }
 
 /// `--up`.

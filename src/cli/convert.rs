@@ -16,7 +16,7 @@ pub(crate) fn run(args: &ConvertArgs) -> Result<(), Failure> {
         }
     };
     start::check_scene(&place)?;
-    let read = start::mesh(&args.mesh)?;
+    let read = start::mesh(&args.mesh, args.max_memory)?;
     // If nobody listens on stderr, so be it.
     let _ = diagnostics::print(read.loader.warnings());
     let path = start::path_from(&place, &args.mesh)?;

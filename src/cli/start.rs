@@ -1,6 +1,7 @@
 //! What `turntable` and `convert` start from: a mesh named on the command line, and a scene written for it.
 
 use super::failure::Failure;
+use super::load;
 use super::output::check_writable;
 use crate::asset::{Loader, MeshId, ModelId, codes};
 use crate::author::{self, PathError, points};
@@ -30,9 +31,9 @@ pub(crate) enum What {
 }
 
 /// Reads a mesh by its suffix.
-pub(crate) fn mesh(path: &Path) -> Result<Read, Failure> {
+pub(crate) fn mesh(path: &Path, max_memory: u64) -> Result<Read, Failure> {
     let suffix = path.extension().and_then(OsStr::to_str).unwrap_or("");
-    let mut loader = Loader::new();
+    let (mut loader, _patience) = load::loader(max_memory);
     let (what, points) = match suffix.to_ascii_lowercase().as_str() {
         "obj" => {
             let id = loader.mesh(path).map_err(|all| refuse(path, all))?;

@@ -61,7 +61,7 @@ pub(crate) fn run(args: &TurntableArgs) -> Result<(), Failure> {
 /// Reads the mesh, makes the scene, and writes it if asked to.
 fn renderer(args: &TurntableArgs, turn: &Turn) -> Result<Renderer, Failure> {
     let place = scene_path(args);
-    let mesh = start::mesh(&args.mesh)?;
+    let mesh = start::mesh(&args.mesh, args.max_memory)?;
     let wanted = Turntable {
         path: start::path_from(&place, &args.mesh)?,
         gltf: matches!(mesh.what, start::What::Model(_)),
