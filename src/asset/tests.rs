@@ -239,6 +239,39 @@ fn mixed_faces_keep_their_own_attributes_in_any_order() {
 }
 
 #[test]
+fn a_concave_face_is_cut_with_all_that_its_corners_have() {
+    // A fan from the first corner would cover what is outside. A square and a triangle without area stand around it.
+    let arrow = [[0.0, 4.0], [1.0, 1.0], [4.0, 0.0], [3.0, 3.0], [4.0, 4.0]];
+    let mut text = format!("{SQUARE}vt 9 9\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1 4/1/1\nf 1 1 2\n");
+    for [x, y] in arrow {
+        text += &format!("v {x} {y} 0\nvt {} {}\nvn {x} {y} 5\n", 0.1 * x, 0.1 * y);
+    }
+    text += "f -5/-5/-5 -4/-4/-4 -3/-3/-3 -2/-2/-2 -1/-1/-1\nf 1/1/1 2/1/1 4/1/1\n";
+    let (mesh, warnings) = load(text);
+    assert_eq!(codes_and_lines(&warnings), [("W105", 8)]);
+    let mesh = mesh.expect("a mesh");
+    assert_eq!(mesh.triangle_count(), 2 + 3 + 1);
+    let mut area = 0.0;
+    for triangle in 2..5 {
+        let corner = |k: usize| {
+            let corner = 3 * triangle + k;
+            let p = mesh.positions[mesh.corners[corner] as usize];
+            assert_eq!(mesh.uvs.get(corner), Some(0.1 * p.truncate()));
+            let normal = mesh.normals.get(corner).expect("a normal");
+            assert!(normal.distance(DVec3::new(p.x, p.y, 5.0).normalize()) < 1e-15);
+            p.truncate()
+        };
+        let [a, b, c] = [0, 1, 2].map(corner);
+        area += 0.5 * (b - a).perp_dot(c - a);
+    }
+    // By the shoelace formula.
+    let around = (0..5).map(|i| (DVec2::from(arrow[i]), DVec2::from(arrow[(i + 1) % 5])));
+    let expect: f64 = around.map(|(a, b)| 0.5 * a.perp_dot(b)).sum();
+    assert!((area - expect).abs() < 1e-12, "{area}, not {expect}");
+    assert!(mesh.uvs.get(3 * 5) == Some(DVec2::splat(9.0)));
+}
+
+#[test]
 fn attributes_that_cannot_be_used_are_told_of_and_absent() {
     let (mesh, warnings) = load(format!(
         "{TRIANGLE}vt 0 0\nf 1/1 2 3\nf 1 2\nf 1 2 2\nf 3 2 1"
