@@ -34,16 +34,16 @@ impl Records {
         }
     }
 
-    /// Adds a line of these words, all of which count.
-    pub(super) fn push(&mut self, words: &[&str]) {
+    /// Adds a line of these numbers, all of which count.
+    pub(super) fn push(&mut self, numbers: &[&str]) {
         if self.count == 0 && self.kind > 0 {
             // A corner of a face needs a position too.
             self.text.push_str("v 0 0 0\n");
         }
         self.text.push_str(KINDS[self.kind]);
-        for word in words {
+        for number in numbers {
             self.text.push(' ');
-            self.text.push_str(word);
+            self.text.push_str(number);
         }
         self.text.push('\n');
         self.count += 1;
@@ -124,11 +124,14 @@ fn read(text: &str) -> Result<tobj::Mesh, LoadError> {
         .unwrap_or_default())
 }
 
+/// Words of a line that the parser may see: a keyword, three numbers and a weight.
+const MAX_WORDS: usize = 5;
+
 /// Lines with NaN for every number that cannot be read.
 fn readable(lines: &str) -> String {
     let mut text = String::with_capacity(lines.len());
     for line in lines.lines() {
-        for (i, word) in line.split(' ').enumerate() {
+        for (i, word) in line.split_whitespace().take(MAX_WORDS).enumerate() {
             let bad_weight = i == 4 && word.parse() == Ok(0.0);
             let bad = i > 0 && (bad_weight || word.parse::<f64>().is_err());
             text.push_str(if i == 0 { "" } else { " " });

@@ -151,20 +151,11 @@ impl Scanner<'_> {
     /// Takes the numbers that count: of a `v` line three, or four where the fourth is the weight `w` (five or more are
     /// vertex colours); of `vt` two, the second being optional; of `vn` three.
     fn vertex(&mut self, line: &Line<'_>, kind: usize) -> Result<(), Diagnostic> {
-        let mut words = [""; 5];
-        let mut count = 0;
-        // As the parser does.
-        for word in line.values().split_whitespace().take(words.len()) {
-            words[count] = word;
-            count += 1;
-        }
+        let values = line.values();
+        let (count, ends) = words(values);
         let (least, kept) = match (kind, count) {
             (0, 4) => (3, 4),
-            (1, 1) => {
-                words[1] = "0";
-                count = 2;
-                (2, 2)
-            }
+            (1, 1) => (1, 1),
             (1, _) => (2, 2),
             _ => (3, 3),
         };
@@ -174,7 +165,12 @@ impl Scanner<'_> {
             self.error(codes::BAD_NUMBER, line.at, says);
             return Ok(());
         }
-        self.records[kind].push(&words[..kept]);
+        let numbers = &values[..ends[kept - 1]];
+        if (kind, count) == (1, 1) {
+            self.records[kind].push(&[numbers, "0"]);
+        } else {
+            self.records[kind].push(&[numbers]);
+        }
         if self.records[kind].is_full() {
             self.read(kind)
         } else {
@@ -332,6 +328,27 @@ impl Scanner<'_> {
             }
         }
     }
+}
+
+/// Words of a line that matter: more of them are colours.
+const MAX_WORDS: usize = 5;
+
+/// The number of words, at most [`MAX_WORDS`], and where each ends.
+fn words(text: &str) -> (usize, [usize; MAX_WORDS]) {
+    let mut ends = [text.len(); MAX_WORDS];
+    let (mut count, mut inside) = (0, false);
+    for (at, byte) in text.bytes().enumerate() {
+        let is_blank = matches!(byte, b' ' | b'\t'..=b'\r');
+        if inside && is_blank {
+            ends[count - 1] = at;
+            if count == MAX_WORDS {
+                break;
+            }
+        }
+        count += usize::from(!inside && !is_blank);
+        inside = !is_blank;
+    }
+    (count, ends)
 }
 
 /// Appends one attribute of the corners of a face, as a fan.
