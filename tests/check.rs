@@ -186,8 +186,8 @@ fn every_code_of_the_source_is_in_the_table_and_used() {
 
 #[test]
 fn every_code_is_provoked_by_a_test() {
-    /// Nothing that a file can do gives these.
-    const INTERNAL: &[&str] = &["E110"];
+    /// Nothing that a file can do gives these: a bug of the OBJ parser, and what the validator of glTF refuses before.
+    const INTERNAL: &[&str] = &["E110", "E131"];
     let (product, tests) = product_and_tests();
     let silent: Vec<String> = constants(&product)
         .into_iter()
