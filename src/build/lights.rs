@@ -131,7 +131,10 @@ fn mean(rgb: [f64; 3]) -> f64 {
 /// Integral of a spot's falloff over its cone, over π: with a = 1 − cos inner and o = 1 − cos outer, 2 (a + (o − a) / 3).
 /// 1 − cos θ is 2 sin² (θ / 2), which does not cancel.
 fn spot_share(inner_deg: f64, outer_deg: f64) -> f64 {
-    let height = |deg: f64| 2.0 * sin_cos_deg(deg / 2.0).0.powi(2);
+    let height = |deg: f64| {
+        let (sin, _) = sin_cos_deg(deg / 2.0);
+        2.0 * sin * sin
+    };
     let (inner, outer) = (height(inner_deg), height(outer_deg));
     2.0 * (inner + (outer - inner) / 3.0)
 }
