@@ -16,6 +16,7 @@ mod light;
 mod opacity;
 pub mod options;
 mod path;
+mod punctual;
 pub mod rays;
 mod sampler;
 mod scatter;
