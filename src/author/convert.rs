@@ -265,7 +265,7 @@ impl Bounds {
         }
     }
 
-    /// A place to a ten-thousandth of the reach, in few digits.
+    /// A place in few digits.
     fn short(&self, p: DVec3) -> [f64; 3] {
         numbers::place(p, self.reach)
     }

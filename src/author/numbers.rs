@@ -17,7 +17,7 @@ pub(super) fn decimals(x: f64) -> f64 {
     0.0 + (x * STEPS).round() / STEPS
 }
 
-/// A place to about a ten-thousandth of `reach`.
+/// A place to a hundred-thousandth of `reach`.
 pub(super) fn place(p: DVec3, reach: f64) -> [f64; 3] {
     /// Digits of a number as large as `reach`, and of any double.
     const DIGITS: usize = 5;
@@ -43,6 +43,6 @@ mod tests {
         assert_eq!(decimals(0.123_456_7), 0.123_46);
         assert!(decimals(-1e-9).is_sign_positive());
         let far = place(DVec3::new(1_234_567.123_456, -0.000_012_345_678, 0.0), 1.0);
-        assert_eq!(far, [1_234_567.123_5, -0.000_012_346, 0.0]);
+        assert_eq!(far, [1_234_567.123_46, -0.000_012_346, 0.0]);
     }
 }
