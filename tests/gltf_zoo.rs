@@ -336,6 +336,28 @@ fn box_textured_is_as_its_screenshot_shows_it() {
 }
 
 #[test]
+fn texture_settings_test_shows_green() {
+    let Some(data) = data() else { return };
+    let file = data.join("zoo/gltf/sample/TextureSettingsTest/glTF/TextureSettingsTest.gltf");
+    // Clamp, repeat and mirror, each along s and t. The row "single-sided" is left out: luxel shows both sides.
+    for row in [0.52, -0.55, -1.56, -2.63, -3.64, -4.66] {
+        let front = [DVec3::new(1.84, row, 5.0), DVec3::new(1.84, row, 0.0)];
+        let film = render(&file, front, "").expect("a picture");
+        let planes = film.planes();
+        // The mean of the inner part of the box at a column of the picture.
+        let mean = |column: usize| {
+            let pixels = (27..37).flat_map(|y| (column - 5..column + 5).map(move |x| y * 64 + x));
+            let colors = pixels.map(|pixel| DVec3::from_array(planes.albedo[pixel]));
+            colors.fold(DVec3::ZERO, |sum, color| sum + color) / 100.0
+        };
+        // A tick or a field in green; what fails is a cross or a field in red.
+        for color in [mean(7), mean(45)] {
+            assert!(color.y > color.x + 0.05, "{color} at {row}");
+        }
+    }
+}
+
+#[test]
 fn cameras_and_hierarchies_are_where_their_file_says() {
     let Some(data) = data() else { return };
     let zoo = data.join("zoo/gltf");
