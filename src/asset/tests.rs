@@ -271,6 +271,24 @@ fn a_concave_face_is_cut_with_all_that_its_corners_have() {
     assert!(mesh.uvs.get(3 * 5) == Some(DVec2::splat(9.0)));
 }
 
+/// Cutting ears takes the square of the corners.
+#[test]
+fn a_concave_face_of_very_many_corners_is_refused() {
+    let corners = 5_000;
+    let mut obj = String::new();
+    for corner in 0..corners {
+        let (x, tooth) = (corner / 2, corner % 2);
+        obj.push_str(&format!("v {x} {} 0\n", tooth * (2 + corner % 3)));
+    }
+    obj.push_str(&format!("v {corners} -1 0\nv 0 -1 0\nf"));
+    for corner in 1..=corners + 2 {
+        obj.push_str(&format!(" {corner}"));
+    }
+    let (code, line, says) = error(&obj);
+    assert_eq!((code, line), ("E109", corners + 3));
+    assert!(says.contains("5002 corners"), "{says}");
+}
+
 #[test]
 fn attributes_that_cannot_be_used_are_told_of_and_absent() {
     let (mesh, warnings) = load(format!(

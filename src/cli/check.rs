@@ -20,7 +20,10 @@ pub(crate) fn run(args: &CheckArgs) -> Result<(), Failure> {
             Err(failure) => (None, Err(failure)),
         }
     } else {
-        (None, load::scene(path, args.max_memory).map(|(_, warnings)| warnings))
+        (
+            None,
+            load::scene(path, args.max_memory).map(|(_, warnings)| warnings),
+        )
     };
     if args.json {
         return answer(args, contents.as_ref(), checked);

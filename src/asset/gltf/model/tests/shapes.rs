@@ -283,7 +283,10 @@ fn a_normal_that_is_none_is_absent() {
     let normals = draft.floats(&[[0.0; 3], [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]]);
     draft.attribute("NORMAL", normals);
     let read = draft.read().expect("a model");
-    assert_eq!(read.mesh().normals.iter().collect::<Vec<_>>(), [None, Some(DVec3::Z), Some(DVec3::Z)]);
+    assert_eq!(
+        read.mesh().normals.iter().collect::<Vec<_>>(),
+        [None, Some(DVec3::Z), Some(DVec3::Z)]
+    );
     assert!(read.codes().contains(&"W106"), "{:?}", read.warnings);
 }
 
