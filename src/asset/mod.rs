@@ -38,7 +38,7 @@ pub use limits::Limits;
 pub use loader::Loader;
 pub use reading::Reading;
 
-use crate::math::{DAffine3, DVec2, DVec3};
+use crate::math::{DAffine3, DMat3, DVec2, DVec3, quaternion};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -62,7 +62,7 @@ pub struct ModelId(pub u32);
 pub struct Mesh {
     /// The file.
     pub path: PathBuf,
-    /// Vertex positions as authored. Of a glTF file, only those that a triangle uses, in order of first use.
+    /// Vertex positions as authored, of those vertices that a triangle uses.
     pub positions: Vec<DVec3>,
     /// Position index of each corner; length `3 * triangles`. Triangles are in file order after triangulation, without
     /// those that have no area: these are dropped and do not count.
@@ -255,6 +255,24 @@ pub struct Model {
     pub meshes: Vec<Option<MeshId>>,
 }
 
+impl Model {
+    /// What is shown: each mesh with the map to the file's space, in the order of the nodes.
+    #[must_use]
+    pub fn placed(&self) -> Vec<(MeshId, DAffine3)> {
+        let mut frames: Vec<DAffine3> = Vec::with_capacity(self.nodes.len());
+        let mut placed = Vec::new();
+        for node in &self.nodes {
+            // Parents come before their children.
+            let parent = node.parent.and_then(|p| frames.get(p).copied());
+            let frame = parent.unwrap_or_default() * node.transform.affine();
+            frames.push(frame);
+            let mesh = node.mesh.and_then(|m| *self.meshes.get(m)?);
+            placed.extend(mesh.map(|mesh| (mesh, frame)));
+        }
+        placed
+    }
+}
+
 /// A node of a [`Model`].
 #[derive(Clone, Debug)]
 pub struct ModelNode {
@@ -288,6 +306,24 @@ pub enum NodeTransform {
     },
     /// An affine map as authored.
     Matrix(DAffine3),
+}
+
+impl NodeTransform {
+    /// As one affine map.
+    #[must_use]
+    pub fn affine(&self) -> DAffine3 {
+        match *self {
+            NodeTransform::Parts {
+                translate,
+                rotate,
+                scale,
+            } => DAffine3 {
+                matrix3: quaternion(rotate) * DMat3::from_diagonal(scale),
+                translation: translate,
+            },
+            NodeTransform::Matrix(map) => map,
+        }
+    }
 }
 
 /// Wrap mode of a texture outside [0, 1].

@@ -1,8 +1,8 @@
 //! What is in a mesh file, in one line.
 
-use crate::asset::{AssetStore, ModelId, ModelNode, NodeTransform};
+use crate::asset::{AssetStore, Mesh, MeshId, ModelId, ModelNode};
 use crate::check::short;
-use crate::math::{DAffine3, DMat3, DVec3, quaternion};
+use crate::math::{DAffine3, DVec3};
 use serde_json::{Value, json};
 use std::fmt;
 
@@ -33,33 +33,20 @@ impl Contents {
             lights: nodes.iter().filter(|n| n.light.is_some()).count(),
             bounds: None,
         };
-        let Some(model) = model else {
-            for id in 0..store.meshes.len() {
-                contents.add(store, id, &DAffine3::IDENTITY);
-            }
-            return contents;
+        let alone = |id: usize| (MeshId(id as u32), DAffine3::IDENTITY);
+        let placed = match model {
+            Some(model) => model.placed(),
+            None => (0..store.meshes.len()).map(alone).collect(),
         };
-        // Parents come before their children.
-        let mut placed: Vec<DAffine3> = Vec::with_capacity(nodes.len());
-        for node in nodes {
-            let parent = node.parent.and_then(|p| placed.get(p).copied());
-            let to_world = parent.unwrap_or(DAffine3::IDENTITY) * local(&node.transform);
-            placed.push(to_world);
-            let mesh = node.mesh.and_then(|m| *model.meshes.get(m)?);
-            if let Some(mesh) = mesh {
-                contents.add(store, mesh.0 as usize, &to_world);
-            }
+        for (mesh, to_world) in placed {
+            contents.add(store.mesh(mesh), &to_world);
         }
         contents
     }
 
-    fn add(&mut self, store: &AssetStore, mesh: usize, to_world: &DAffine3) {
-        let mesh = &store.meshes[mesh];
+    fn add(&mut self, mesh: &Mesh, to_world: &DAffine3) {
         self.triangles += mesh.triangle_count();
-        for corner in &mesh.corners {
-            let Some(p) = mesh.positions.get(*corner as usize) else {
-                continue;
-            };
+        for p in &mesh.positions {
             let p = to_world.transform_point3(*p);
             let (min, max) = self.bounds.unwrap_or((p, p));
             self.bounds = Some((min.min(p), max.max(p)));
@@ -78,20 +65,6 @@ impl Contents {
             "min": self.bounds.map(|(min, _)| min.to_array()),
             "max": self.bounds.map(|(_, max)| max.to_array()),
         })
-    }
-}
-
-fn local(transform: &NodeTransform) -> DAffine3 {
-    match *transform {
-        NodeTransform::Parts {
-            translate,
-            rotate,
-            scale,
-        } => DAffine3 {
-            matrix3: quaternion(rotate) * DMat3::from_diagonal(scale),
-            translation: translate,
-        },
-        NodeTransform::Matrix(map) => map,
     }
 }
 
