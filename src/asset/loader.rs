@@ -4,6 +4,7 @@ use super::limits::{Budget, Limits};
 use super::materials::Source;
 use super::paths::{canonical, similar_file};
 use super::reading::Reading;
+use super::told::Told;
 use super::{
     AssetStore, Mesh, MeshId, Model, ModelId, Texture, TextureId, codes, gltf, obj, scan, text,
     texture,
@@ -28,7 +29,13 @@ pub struct Loader {
     reading: Arc<Reading>,
     hash: Sha256,
     bytes: u64,
+    /// Warnings about the mesh that is being read.
+    pub(super) told: Told,
+    guesses: usize,
 }
+
+/// So many wrong names are compared with those that exist: each takes a look at a folder or a list.
+const MAX_GUESSES: usize = 100;
 
 impl Loader {
     /// A loader that has read nothing.
@@ -157,7 +164,7 @@ impl Loader {
         };
         let bytes = bytes.map_err(|e| {
             let error = error(format!("cannot be read: {e}"));
-            match similar_file(path) {
+            match self.similar(path) {
                 Some(name) => error.hint(format!("did you mean \"{name}\"?")),
                 None => error,
             }
@@ -165,6 +172,17 @@ impl Loader {
         self.hash.update(Sha256::digest(&bytes));
         self.bytes += bytes.len() as u64;
         Ok(bytes)
+    }
+
+    /// Whether it is worth the time to look for the name that a wrong one may have meant.
+    pub(super) fn may_guess(&mut self) -> bool {
+        self.guesses += 1;
+        self.guesses <= MAX_GUESSES
+    }
+
+    /// The name of a file that a missing file may have meant.
+    pub(super) fn similar(&mut self, path: &Path) -> Option<String> {
+        self.may_guess().then(|| similar_file(path)).flatten()
     }
 
     /// Reads the header of an image and takes the memory that its texels will need.
@@ -215,8 +233,10 @@ impl Loader {
             found.into_iter().map(|one| one.in_file(path)).collect()
         };
         let scan = scan::scan(&text, path, &mut self.budget).map_err(in_file)?;
-        let libraries = self.libraries(&source, &scan.libraries)?;
-        let (materials, by_use) = self.materials(&source, &scan, &libraries)?;
+        let resolved = self.resolve(&source, &scan);
+        let told = std::mem::take(&mut self.told);
+        self.warnings.extend(told.finish());
+        let (materials, by_use) = resolved?;
         let mut warnings = Vec::new();
         let mesh = obj::triangles(&text, scan, &by_use, &mut warnings);
         self.warnings.extend(in_file(warnings));

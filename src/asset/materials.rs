@@ -1,7 +1,7 @@
 //! The materials of a mesh: from the `mtllib` and `usemtl` lines of an OBJ file to [`MeshMaterial`]s.
 
 use super::loader::Loader;
-use super::paths::{beside, library_names, most_similar, same_name_beside, similar_file};
+use super::paths::{beside, library_names, most_similar, same_name_beside};
 use super::scan::{Named, Scan, at_line};
 use super::{AlphaMode, MeshMaterial, Opacity, TextureId, TextureUse, codes, mtl, text};
 use crate::diag::Diagnostic;
@@ -37,6 +37,8 @@ type Resolved = (Vec<MeshMaterial>, Vec<Option<u32>>);
 #[derive(Default)]
 pub(super) struct Libraries {
     read: Vec<Library>,
+    /// Library and definition of each name, the first of several.
+    by_name: BTreeMap<String, (usize, usize)>,
     /// Whether one was missing, so that unknown names are no news.
     missing: bool,
 }
@@ -47,17 +49,43 @@ impl Libraries {
         [name, text::without_comment(name)]
             .into_iter()
             .find_map(|name| {
-                self.read.iter().find_map(|library| {
-                    let definition = library.definitions.iter().find(|d| d.name == name)?;
-                    Some((library, definition))
-                })
+                let &(library, definition) = self.by_name.get(name)?;
+                let library = self.read.get(library)?;
+                Some((library, library.definitions.get(definition)?))
             })
+    }
+
+    fn keep(&mut self, library: Library) {
+        let index = self.read.len();
+        for (i, definition) in library.definitions.iter().enumerate() {
+            let name = definition.name.clone();
+            self.by_name.entry(name).or_insert((index, i));
+        }
+        self.read.push(library);
     }
 }
 
 impl Loader {
+    /// The materials of a scanned file.
+    ///
+    /// # Errors
+    /// Libraries and textures that cannot be used.
+    pub(super) fn resolve(
+        &mut self,
+        source: &Source<'_>,
+        scan: &Scan,
+    ) -> Result<Resolved, Vec<Diagnostic>> {
+        let libraries = self.libraries(source, &scan.libraries)?;
+        self.materials(source, scan, &libraries)
+    }
+
+    /// Warns at a place of a file.
+    fn tell(&mut self, source: &Source<'_>, at: usize, warning: Diagnostic) {
+        self.told.add(warning.code, || source.place(warning, at));
+    }
+
     /// Reads the material libraries that the `mtllib` lines name; a missing one is a warning.
-    pub(super) fn libraries(
+    fn libraries(
         &mut self,
         source: &Source<'_>,
         lines: &[Named],
@@ -72,7 +100,7 @@ impl Loader {
                         "the material file \"{name}\" is missing: its materials are the default one"
                     );
                     let warning = Diagnostic::warning(codes::MTL_MISSING, says);
-                    self.warnings.push(source.place(warning, line.at));
+                    self.tell(source, line.at, warning);
                     continue;
                 };
                 if libraries.read.iter().any(|known| known.path == path) {
@@ -81,7 +109,7 @@ impl Loader {
                 let bytes = self.read(&path).map_err(|e| vec![e])?;
                 let text = text::decode(&bytes).into_owned();
                 match mtl::read(&text) {
-                    Ok(definitions) => libraries.read.push(Library {
+                    Ok(definitions) => libraries.keep(Library {
                         path,
                         source: text,
                         definitions,
@@ -98,7 +126,7 @@ impl Loader {
     }
 
     /// The materials that faces use, in order of first use, and which of them each `usemtl` line means.
-    pub(super) fn materials(
+    fn materials(
         &mut self,
         source: &Source<'_>,
         scan: &Scan,
@@ -119,8 +147,7 @@ impl Loader {
         {
             let says = "the file uses materials and names no material file: the default stands in";
             let warning = Diagnostic::warning(codes::UNKNOWN_MATERIAL, says);
-            self.warnings
-                .push(source.place(warning, scan.uses[first].at));
+            self.tell(source, scan.uses[first].at, warning);
         }
         let mut seen = BTreeSet::new();
         let mut materials = Vec::new();
@@ -179,8 +206,7 @@ impl Loader {
             None => NEUTRAL,
         };
         let mut warn = |code, at, says: String| {
-            self.warnings
-                .push(source.place(Diagnostic::warning(code, says), at));
+            self.tell(&source, at, Diagnostic::warning(code, says));
         };
         if texture.is_some() && color == [0.0; 3] {
             warn(
@@ -217,7 +243,7 @@ impl Loader {
             Some((0.0, at)) => {
                 let says = format!("\"{name}\" would be invisible, and is taken as opaque");
                 let warning = Diagnostic::warning(codes::INVISIBLE, says);
-                self.warnings.push(source.place(warning, at));
+                self.tell(source, at, warning);
             }
             Some((opacity, _)) => factor = opacity,
             None => {}
@@ -236,7 +262,7 @@ impl Loader {
                 // The colour's own image is named out of habit.
                 let says = format!("the image has no alpha: \"{name}\" stays opaque");
                 let warning = Diagnostic::warning(codes::NO_ALPHA, says);
-                self.warnings.push(source.place(warning, *at));
+                self.tell(source, *at, warning);
             }
         }
         let mode = match (factor, texture) {
@@ -262,10 +288,10 @@ impl Loader {
         }
         let says = format!("the texture \"{name}\" is missing: the material does without");
         let mut warning = Diagnostic::warning(codes::TEXTURE_MISSING, says);
-        if let Some(similar) = similar_file(&beside(source.path, name)) {
+        if let Some(similar) = self.similar(&beside(source.path, name)) {
             warning = warning.hint(format!("did you mean \"{similar}\"?"));
         }
-        self.warnings.push(source.place(warning, at));
+        self.tell(source, at, warning);
         Ok(None)
     }
 
@@ -278,7 +304,7 @@ impl Loader {
         let found = same_name_beside(source.path, text::without_comment(name))?;
         let says = format!("\"{name}\" does not exist: taken from beside this file instead");
         let warning = Diagnostic::warning(codes::FOUND_BESIDE, says);
-        self.warnings.push(source.place(warning, at));
+        self.tell(source, at, warning);
         Some(found)
     }
 
@@ -301,7 +327,8 @@ impl Loader {
             keywords.join(", ")
         );
         let warning = Diagnostic::warning(codes::NOT_MODELLED, says).in_file(&library.path);
-        self.warnings.push(at_line(warning, &library.source, *at));
+        self.told
+            .add(warning.code, || at_line(warning, &library.source, *at));
     }
 
     fn warn_unknown(&mut self, source: &Source<'_>, line: &Named, libraries: &Libraries) {
@@ -318,10 +345,12 @@ impl Loader {
             .iter()
             .flat_map(|library| &library.definitions)
             .map(|d| d.name.as_str());
-        if let Some(similar) = most_similar(&line.name, names) {
+        if self.may_guess()
+            && let Some(similar) = most_similar(&line.name, names)
+        {
             warning = warning.hint(format!("did you mean \"{similar}\"?"));
         }
-        self.warnings.push(source.place(warning, line.at));
+        self.tell(source, line.at, warning);
     }
 
     fn warn_of_duplicates(&mut self, libraries: &Libraries) {
@@ -335,8 +364,9 @@ impl Loader {
                     );
                     let warning =
                         Diagnostic::warning(codes::DUPLICATE_MATERIAL, says).in_file(&library.path);
-                    self.warnings
-                        .push(at_line(warning, &library.source, definition.at));
+                    let at = definition.at;
+                    self.told
+                        .add(warning.code, || at_line(warning, &library.source, at));
                 }
             }
         }

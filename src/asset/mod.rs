@@ -31,6 +31,7 @@ mod scan;
 mod tests;
 mod text;
 mod texture;
+mod told;
 mod triangulate;
 
 pub use corner::PerCorner;

@@ -4,6 +4,9 @@ use super::mtl::unquote;
 use super::text::without_comment;
 use std::path::{Path, PathBuf};
 
+/// Bytes of the longest name that is compared with others: file systems have no longer ones.
+const MAX_NAME: usize = 255;
+
 /// Words of a `mtllib` line that are tried together as one name with spaces.
 const MAX_WORDS_OF_NAME: usize = 8;
 
@@ -68,13 +71,22 @@ pub(super) fn similar_file(path: &Path) -> Option<String> {
     most_similar(name, names.iter().map(String::as_str)).filter(|similar| similar != name)
 }
 
-/// The name nearest to a wrong one, if it is near: at most a third of the letters differ, or only their case.
+/// The name nearest to a wrong one, if it is near: at most a third of the letters differ, or only their case. Nothing is
+/// near to what is longer than any name.
 pub(super) fn most_similar<'a>(
     wrong: &str,
     names: impl Iterator<Item = &'a str>,
 ) -> Option<String> {
+    let most = wrong.chars().count() / 3;
+    if wrong.len() > MAX_NAME {
+        return None;
+    }
+    let near = |name: &&str| name.len() <= MAX_NAME;
     let distance =
         |name: &str| strsim::damerau_levenshtein(&wrong.to_lowercase(), &name.to_lowercase());
-    let (distance, name) = names.map(|name| (distance(name), name)).min()?;
-    (distance <= wrong.chars().count() / 3).then(|| name.to_owned())
+    let (distance, name) = names
+        .filter(near)
+        .map(|name| (distance(name), name))
+        .min()?;
+    (distance <= most).then(|| name.to_owned())
 }

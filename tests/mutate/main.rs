@@ -159,10 +159,35 @@ impl Mutants {
             seeds::image(png::ColorType::Rgba, png::BitDepth::Eight),
         )
         .expect("a file");
-        Mutants {
+        let mutants = Mutants {
             seeds: by_suffix.into_iter().collect(),
             folder,
+        };
+        mutants.place_neighbours();
+        mutants
+    }
+
+    /// Copies what glTF files name, buffers and images, to where their damaged copies will stand.
+    fn place_neighbours(&self) {
+        let of_gltf = self.seeds.iter().filter(|(suffix, _)| *suffix == "gltf");
+        for (_, seeds) in of_gltf {
+            for seed in seeds {
+                let to = self.beside(&seed.folder);
+                for (name, bytes) in seeds::neighbours(seed) {
+                    let file = to.join(name);
+                    fs::create_dir_all(file.parent().unwrap_or(&to)).expect("a folder");
+                    fs::write(file, bytes).expect("a file");
+                }
+            }
         }
+    }
+
+    /// The folder for damaged files from a folder: one that holds their neighbours.
+    fn beside(&self, from: &Path) -> PathBuf {
+        let name: String = from.to_string_lossy().replace(['/', '\\', ':'], "_");
+        let folder = self.folder.join(name);
+        fs::create_dir_all(&folder).expect("a folder");
+        folder
     }
 
     /// Damages and tries the file of a number.
@@ -182,8 +207,12 @@ impl Mutants {
 
     /// Writes the damaged file. Returns the text of a scene that uses it, and where that scene would stand.
     fn scene(&self, suffix: &str, bytes: Vec<u8>, from: &Path) -> (Vec<u8>, PathBuf) {
+        let beside = match suffix {
+            "gltf" => self.beside(from),
+            _ => self.folder.clone(),
+        };
         let write = |name: &str, bytes: &[u8]| {
-            fs::write(self.folder.join(name), bytes).expect("a file");
+            fs::write(beside.join(name), bytes).expect("a file");
         };
         if suffix == "ron" {
             let own = from.as_os_str().is_empty();
@@ -208,7 +237,7 @@ impl Mutants {
             "Scene(version: 1, camera: (at: (1, 2, 5), look_at: (0, 0, 0)), background: Linear(1, 1, 1),\n\
              materials: {{ {image} }}, entities: [{entity}])"
         );
-        (text.into_bytes(), self.folder.join("scene.ron"))
+        (text.into_bytes(), beside.join("scene.ron"))
     }
 }
 

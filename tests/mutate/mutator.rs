@@ -27,7 +27,7 @@ const EXTREMES: [&str; 20] = [
 ];
 
 /// Words of the formats, to stand where they should not.
-const WORDS: [&str; 16] = [
+const WORDS: [&str; 20] = [
     "\nf ",
     "\nv ",
     "\nvt ",
@@ -44,6 +44,10 @@ const WORDS: [&str; 16] = [
     "..",
     "//",
     "Some(",
+    "{",
+    "null",
+    "\"extensions\": {\"KHR_materials_transmission\": {}}, ",
+    "\"mesh\": 0, ",
 ];
 
 /// Largest piece that is moved, doubled or removed.
@@ -77,6 +81,9 @@ pub(crate) fn mutate(rng: &mut Rng, seed: &[u8], other: &[u8]) -> Vec<u8> {
     }
     if bytes.starts_with(b"\x89PNG") && rng.below(4) > 0 {
         mend_png(&mut bytes);
+    }
+    if bytes.starts_with(b"glTF") && rng.below(4) > 0 {
+        mend_glb(&mut bytes);
     }
     bytes
 }
@@ -141,6 +148,27 @@ fn mend_png(bytes: &mut [u8]) {
         let sum = crc32(&bytes[at + 4..end]).to_be_bytes();
         bytes[end..end + 4].copy_from_slice(&sum);
         at = end + 4;
+    }
+}
+
+/// Corrects the lengths in a GLB, so that the damage reaches what its chunks say.
+fn mend_glb(bytes: &mut [u8]) {
+    const JSON: usize = 20;
+    let whole = bytes.len();
+    let binary = bytes.windows(4).position(|four| four == b"BIN\0");
+    if whole < JSON {
+        return;
+    }
+    let mut write = |at: usize, length: usize| {
+        bytes[at..at + 4].copy_from_slice(&(length as u32).to_le_bytes());
+    };
+    write(8, whole);
+    match binary.filter(|&kind| kind >= JSON + 4) {
+        Some(kind) => {
+            write(12, kind - 4 - JSON);
+            write(kind - 4, whole - kind - 4);
+        }
+        None => write(12, whole - JSON),
     }
 }
 

@@ -5,7 +5,6 @@
 
 use super::notes::Notes;
 use super::source::{Image, Source};
-use crate::asset::paths::similar_file;
 use crate::asset::{Loader, Texture, TextureId, codes, texture};
 use crate::diag::Diagnostic;
 use rayon::prelude::*;
@@ -152,7 +151,7 @@ fn locate(
     }
     let pointer = format!("/images/{image}/uri");
     if !file.is_file() {
-        notes.tell(missing(&file).pointer(pointer));
+        notes.tell(missing(loader, &file).pointer(pointer));
         return Ok(None);
     }
     let bytes = loader.read(&file).map_err(|error| {
@@ -169,13 +168,13 @@ fn locate(
     Ok(None)
 }
 
-fn missing(file: &Path) -> Diagnostic {
+fn missing(loader: &mut Loader, file: &Path) -> Diagnostic {
     let says = format!(
         "the image {} is missing: materials keep their plain colour",
         file.display()
     );
     let warning = Diagnostic::warning(codes::GLTF_IMAGE_MISSING, says);
-    match similar_file(file) {
+    match loader.similar(file) {
         Some(similar) => warning.hint(format!("did you mean \"{similar}\"?")),
         None => warning.hint("put it where the glTF file says"),
     }

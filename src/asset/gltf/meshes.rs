@@ -148,6 +148,7 @@ struct Builder<'a> {
     keep: Keep,
     /// For each accessor of positions, the index in the mesh of each vertex that a triangle has used.
     places: BTreeMap<usize, Vec<Option<u32>>>,
+    slots: BTreeMap<Look, u32>,
     shaped: Shaped,
 }
 
@@ -158,6 +159,7 @@ impl<'a> Builder<'a> {
             cache: Cache::new(source),
             keep: Keep::default(),
             places: BTreeMap::new(),
+            slots: BTreeMap::new(),
             shaped: Shaped {
                 mesh: Mesh {
                     path: source.path.clone(),
@@ -260,14 +262,12 @@ impl<'a> Builder<'a> {
             uv_sets: part.attributes.uvs.map(|set| set.is_some()),
             colors: part.attributes.colors.is_some(),
         };
-        let looks = &mut self.shaped.looks;
-        let slot = looks.iter().position(|known| *known == look);
-        let slot = slot.unwrap_or_else(|| {
+        let Shaped { looks, notes, .. } = &mut self.shaped;
+        *self.slots.entry(look).or_insert_with(|| {
             looks.push(look);
-            materials::say_missing_uvs(&part.material, &look, &part.place, &mut self.shaped.notes);
-            looks.len() - 1
-        });
-        slot as u32
+            materials::say_missing_uvs(&part.material, &look, &part.place, notes);
+            looks.len() as u32 - 1
+        })
     }
 
     /// The indices in the mesh of the vertices of a triangle; a vertex that no triangle uses gets none.

@@ -152,6 +152,7 @@ pub(super) fn check(json: &Value, report: &mut Report) {
     let used = declared(json);
     let required = items(json, "extensionsRequired");
     let required: Vec<&str> = required.iter().filter_map(Value::as_str).collect();
+    let is_required: BTreeSet<&str> = required.iter().copied().collect();
     if json.get("extensionsRequired").is_some() && json.get("extensionsUsed").is_none() {
         let says = "\"extensionsRequired\" without \"extensionsUsed\"";
         report.warning(codes::GLTF_DECLARATION, "/extensionsRequired", says);
@@ -175,11 +176,11 @@ pub(super) fn check(json: &Value, report: &mut Report) {
         let Some(name) = value.as_str() else { continue };
         let pointer = format!("/extensionsUsed/{i}");
         match verdict(name) {
-            Lacks(instead, _) if !required.contains(&name) => {
+            Lacks(instead, _) if !is_required.contains(name) => {
                 let says = format!("luxel lacks the extension {name}: {instead}");
                 report.warning(codes::GLTF_EXTENSION, pointer, says);
             }
-            Read if name == "KHR_mesh_quantization" && !required.contains(&name) => {
+            Read if name == "KHR_mesh_quantization" && !is_required.contains(name) => {
                 let says = format!("{name:?} is used, and must be in \"extensionsRequired\" too");
                 report.warning(codes::GLTF_DECLARATION, pointer, says);
             }

@@ -19,8 +19,12 @@ use std::fs::File;
 use std::io::{BufRead, BufReader, Cursor, Seek};
 use std::path::Path;
 
+/// Missing files for which the folder is searched for a similar name.
+const MAX_GUESSES: usize = 10;
+
 /// Checks every image of a file.
 pub(in crate::asset::gltf) fn check(rules: &mut Rules, buffers: &Buffers, document: &Path) {
+    let mut guesses = 0;
     for (i, image) in items(rules.json, "images").iter().enumerate() {
         let mime = image.get("mimeType").and_then(Value::as_str);
         if let Some(text) = image.get("uri").and_then(Value::as_str) {
@@ -29,7 +33,7 @@ pub(in crate::asset::gltf) fn check(rules: &mut Rules, buffers: &Buffers, docume
                     let mime = mime.unwrap_or(&media);
                     content(rules, i, Some(mime), Cursor::new(bytes));
                 }
-                Ok(Uri::File(path)) => in_file(rules, i, mime, &path),
+                Ok(Uri::File(path)) => in_file(rules, i, mime, &path, &mut guesses),
                 Err(bad) => {
                     if !rules.uses.images.contains(&i) {
                         let found = Diagnostic::warning(codes::GLTF_IMAGE, bad.says);
@@ -48,19 +52,29 @@ pub(in crate::asset::gltf) fn check(rules: &mut Rules, buffers: &Buffers, docume
     }
 }
 
-fn in_file(rules: &mut Rules, i: usize, mime: Option<&str>, path: &Path) {
-    match File::open(path) {
+fn in_file(rules: &mut Rules, i: usize, mime: Option<&str>, path: &Path, guesses: &mut usize) {
+    match open(path) {
         Ok(file) => content(rules, i, mime, BufReader::new(file)),
         Err(_) if rules.uses.images.contains(&i) => {}
         Err(e) => {
             let says = format!("{} cannot be read: {e}", path.display());
             let found =
                 Diagnostic::warning(codes::GLTF_IMAGE, says).pointer(format!("/images/{i}/uri"));
-            rules.report.add(match similar_file(path) {
+            *guesses += 1;
+            let similar = (*guesses <= MAX_GUESSES).then(|| similar_file(path));
+            rules.report.add(match similar.flatten() {
                 Some(name) => found.hint(format!("did you mean \"{name}\"?")),
                 None => found,
             });
         }
+    }
+}
+
+/// Opens a regular file: a pipe might never answer.
+fn open(path: &Path) -> std::io::Result<File> {
+    match std::fs::metadata(path)?.is_file() {
+        true => File::open(path),
+        false => Err(std::io::Error::other("this is not a file")),
     }
 }
 
