@@ -23,7 +23,7 @@ impl Default for Limits {
 }
 
 /// The memory that is left of [`Limits`].
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Budget {
     limits: Limits,
     used: u64,

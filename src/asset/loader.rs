@@ -150,6 +150,11 @@ impl Loader {
         self.budget.charge(bytes, what, path)
     }
 
+    /// What is left of the budget, to ask of where the loader is not at hand.
+    pub(super) fn budget(&self) -> &Budget {
+        &self.budget
+    }
+
     /// The bytes of a regular file, which enter the hash.
     pub(super) fn read(&mut self, path: &Path) -> Result<Vec<u8>, Diagnostic> {
         let error = |says: String| Diagnostic::error(codes::UNREADABLE, says).in_file(path);

@@ -272,6 +272,13 @@ impl Model {
         }
         placed
     }
+
+    /// Whether there is nothing to see, to see by or to see from: no triangles, lights or cameras.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        let serves = |node: &ModelNode| node.light.is_some() || node.camera_vfov_deg.is_some();
+        self.meshes.iter().all(Option::is_none) && !self.nodes.iter().any(serves)
+    }
 }
 
 /// A node of a [`Model`].

@@ -14,5 +14,4 @@ codes! {
     RADIANS = "W307": "an angle that looks like radians where degrees are meant";
     OTHER_LIGHT_UNITS = "W308": "lights so strong or so weak that their units are probably others";
     PARTLY_WITHOUT_UV = "W309": "triangles without texture coordinates under a textured material";
-    EMPTY_GLTF = "W310": "a glTF file that brings neither meshes nor lights";
 }

@@ -67,7 +67,6 @@ pub fn check_world(desc: &SceneDesc, world: &World, store: &AssetStore) -> Vec<D
     found.extend(scale::other_units(&posed));
     found.extend(light::units(&posed));
     found.extend(uvs::partly_textured(&posed));
-    found.extend(empty_files(&posed));
     found.extend(light::dark(&posed));
     in_order(&mut found);
     found
@@ -153,28 +152,4 @@ fn unused_materials(desc: &SceneDesc, lines: &Lines<'_>) -> impl Iterator<Item =
             warning(desc, lines, scene_codes::UNUSED_MATERIAL, place, message)
                 .hint("give it to an entity, `material: ..`, or take it out")
         })
-}
-
-/// glTF files that bring neither a mesh nor a light, for entities that want them to.
-fn empty_files(posed: &Posed) -> Vec<Diagnostic> {
-    let desc = posed.desc;
-    let entities = desc.entities.iter().enumerate();
-    let named = entities.filter_map(|(i, e)| Some((i, e.value.gltf.as_ref()?)));
-    let brings: BTreeSet<usize> = posed
-        .items
-        .iter()
-        .map(|item| item.entity())
-        .chain(posed.lights.iter().map(|lamp| lamp.index.entity as usize))
-        .collect();
-    named
-        .filter(|(i, _)| !brings.contains(i) && posed.view.entity != *i)
-        .map(|(i, gltf)| {
-            let says = format!("{} brings neither meshes nor lights", gltf.path.value);
-            let hint = match gltf.lights {
-                true => "is its default scene empty? Name another file, or take the entity out",
-                false => "its lights are switched off by `lights: false`",
-            };
-            posed.warn(i, "gltf", codes::EMPTY_GLTF, says).hint(hint)
-        })
-        .collect()
 }

@@ -197,36 +197,13 @@ fn shipped_scenes_are_silent() {
 }
 
 #[test]
-fn a_gltf_file_that_brings_nothing() {
-    use crate::math::DVec3;
-    use crate::world::{AuthoringIndex, Camera, Light, Shape, Transform, pose};
-    let text = format!("(version: 1, {CAMERA} {LIT} entities: [(gltf: \"a.glb\")])");
-    let (desc, _) = scene::parse(&text, Path::new("scene.ron")).expect("the scene reads");
-    let index = |entity, node| AuthoringIndex { entity, node };
-    let camera = Camera {
-        vfov_deg: 40.0,
-        aperture_radius: 0.0,
-        focus_distance: 1.0,
-    };
-    let at = Transform {
-        translate: DVec3::new(0.0, 0.0, 9.0),
-        ..Transform::default()
-    };
-    let found = |light: Option<Light>| {
-        let mut world = World::new();
-        world.spawn((index(1, 0), at, camera));
-        let shape = Shape::Sphere {
-            radius: 1.0,
-            inverted: false,
-        };
-        world.spawn((index(2, 0), Transform::default(), shape));
-        if let Some(light) = light {
-            world.spawn((index(0, 1), at, light));
-        }
-        pose(&mut world, 0.0);
-        codes_of(&check_world(&desc, &world, &AssetStore::default()))
-    };
-    assert_eq!(found(None), ["W310"]);
-    let intensity = [300.0; 3];
-    assert_eq!(found(Some(Light::Point { intensity })), Vec::<&str>::new());
+fn a_gltf_file_that_brings_nothing_is_told_of_once() {
+    let text = "{\"asset\": {\"version\": \"2.0\"}, \"scenes\": [{}]}".to_owned();
+    let folder = Folder::of("nothing", &[("a.gltf", text)]);
+    let text = format!("(version: 1, {CAMERA} {LIT} entities: [(gltf: \"a.gltf\")])");
+    let (desc, _) = scene::parse(&text, &folder.0.join("scene.ron")).expect("the scene reads");
+    let spawned = spawn(&desc, Loader::new()).expect("the file loads");
+    assert_eq!(codes_of(&spawned.warnings), ["W135"]);
+    let found = check_world(&desc, &spawned.world, &spawned.assets);
+    assert_eq!(found, []);
 }

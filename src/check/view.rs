@@ -27,7 +27,7 @@ pub(super) fn view(posed: &Posed) -> Vec<Diagnostic> {
         .collect();
     let mut found = Vec::new();
     if seen.is_empty() && !posed.moves {
-        found.push(nothing(posed));
+        found.extend(nothing(posed));
     }
     found.extend(below_a_pixel(posed, &seen));
     found.extend(radians(posed));
@@ -74,7 +74,8 @@ fn corners(view: &View, item: &Item) -> [DVec3; 8] {
     }
 }
 
-fn nothing(posed: &Posed) -> Diagnostic {
+/// A glTF file that has nothing to show has said so when it was read.
+fn nothing(posed: &Posed) -> Option<Diagnostic> {
     let view = &posed.view;
     let distance = |item: &Item| (item.bounds.center() - view.eye).length();
     let nearest = posed
@@ -82,11 +83,13 @@ fn nothing(posed: &Posed) -> Diagnostic {
         .iter()
         .min_by(|a, b| distance(a).total_cmp(&distance(b)));
     let Some(nearest) = nearest else {
+        if posed.store.models.iter().any(|model| model.is_empty()) {
+            return None;
+        }
         let says = "nothing is in view: the scene has no shape".to_owned();
         let hint = "give an entity `shape: Sphere(radius: 1)`, `shape: Mesh(\"file.obj\")` or `gltf: \"file.glb\"`";
-        return posed
-            .warn_at_camera(&[], codes::NOTHING_IN_VIEW, says)
-            .hint(hint);
+        let warning = posed.warn_at_camera(&[], codes::NOTHING_IN_VIEW, says);
+        return Some(warning.hint(hint));
     };
     let center = nearest.bounds.center();
     let seen = view.seen(center);
@@ -104,9 +107,8 @@ fn nothing(posed: &Posed) -> Diagnostic {
         )
     };
     let hint = format!("turn the camera: `look_at: {}`", place(center));
-    posed
-        .warn_at_camera(&["look_at"], codes::NOTHING_IN_VIEW, says)
-        .hint(hint)
+    let warning = posed.warn_at_camera(&["look_at"], codes::NOTHING_IN_VIEW, says);
+    Some(warning.hint(hint))
 }
 
 /// A rectangle on the picture's plane at distance 1: least and greatest right and up.

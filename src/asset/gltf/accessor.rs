@@ -1,15 +1,12 @@
 //! Accessors to numbers: every component type, normalised integers, strides, sparse elements.
 //!
 //! Enter: layouts and the bytes of buffers. Leave: components as f64, or indices as u32; or what keeps an accessor from
-//! being read. Nothing is allocated before its bytes are known to exist.
+//! being read. Nothing is allocated before its bytes are known to exist and to fit the budget.
 
 use super::buffers::Buffers;
 use super::layout::{Accessor, Component, Layouts, Shape, Sparse, View};
 use crate::asset::codes;
 use crate::diag::Diagnostic;
-
-/// Elements of the largest accessor without any bytes, which stands for zeros: 16 M.
-const MAX_ZEROS: usize = 1 << 24;
 
 /// The elements of an accessor, one after another.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,6 +50,10 @@ fn elements(
     normalized: bool,
 ) -> Result<Elements, Diagnostic> {
     let width = accessor.shape.width();
+    let bytes = (accessor.count as u64).saturating_mul((width * size_of::<f64>()) as u64);
+    // Without bytes it stands for as many zeros as it says.
+    let room = buffers.allow(bytes, "what the accessor decodes to");
+    room.map_err(|error| error.pointer(format!("/accessors/{index}")))?;
     let mut components = match accessor.view {
         Some(view) => {
             let place = (view, accessor.offset);
@@ -60,13 +61,6 @@ fn elements(
             let mut components = Vec::with_capacity(accessor.count * width);
             run.read(normalized, |component| components.push(component));
             components
-        }
-        None if accessor.count > MAX_ZEROS => {
-            let count = accessor.count;
-            return Err(unreadable(
-                index,
-                format!("{count} elements without any bytes"),
-            ));
         }
         None => vec![0.0; accessor.count * width],
     };

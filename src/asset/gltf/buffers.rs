@@ -5,6 +5,7 @@
 use super::container::Container;
 use super::layout::{items, natural};
 use super::uri::{self, Uri};
+use crate::asset::limits::Budget;
 use crate::asset::{Loader, codes};
 use crate::diag::Diagnostic;
 use serde_json::Value;
@@ -30,11 +31,13 @@ pub(super) struct Buffers {
     /// Declared length of each.
     lengths: Vec<usize>,
     bytes: Vec<Bytes>,
+    /// What was left when the file was opened.
+    budget: Budget,
 }
 
 impl Buffers {
-    /// The buffers that a file declares; nothing is read.
-    pub(super) fn of(container: Container, json: &Value) -> Buffers {
+    /// The buffers that a file declares; nothing is read. What their elements decode to must fit the budget.
+    pub(super) fn of(container: Container, json: &Value, budget: &Budget) -> Buffers {
         let declared = |buffer: &Value| buffer.get("byteLength").and_then(natural).unwrap_or(0);
         let lengths: Vec<usize> = items(json, "buffers").iter().map(declared).collect();
         let bytes = lengths.iter().map(|_| Bytes::Unread).collect();
@@ -42,7 +45,20 @@ impl Buffers {
             container,
             lengths,
             bytes,
+            budget: budget.clone(),
         }
+    }
+
+    /// Whether there is memory for what a part of the file decodes to; the error does not name the file.
+    ///
+    /// # Errors
+    /// If there is not.
+    pub(super) fn allow(&self, bytes: u64, what: &str) -> Result<(), Diagnostic> {
+        let allowed = self.budget.allow(bytes, what, Path::new(""));
+        allowed.map_err(|error| Diagnostic {
+            file: None,
+            ..error
+        })
     }
 
     /// The bytes of a buffer, as many as it declares, if they were read.

@@ -64,7 +64,7 @@ fn model(
         nodes,
         meshes,
     };
-    if is_empty(&model) {
+    if model.is_empty() {
         notes.tell(nothing());
     }
     Ok(model)
@@ -159,12 +159,6 @@ fn say_at_rest(source: &Source, notes: &mut Notes) {
     );
     let warning = Diagnostic::warning(codes::GLTF_AT_REST, says).pointer(*first);
     notes.tell(warning.hint("bake the pose that you want, or turn the entity by `spin`"));
-}
-
-fn is_empty(model: &Model) -> bool {
-    let shines =
-        |node: &crate::asset::ModelNode| node.light.is_some() || node.camera_vfov_deg.is_some();
-    model.meshes.iter().all(Option::is_none) && !model.nodes.iter().any(shines)
 }
 
 fn nothing() -> Diagnostic {

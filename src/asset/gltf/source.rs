@@ -151,7 +151,7 @@ fn examine(
 ) -> Buffers {
     let is_binary = container.is_binary();
     let uses = Uses::of(json, layouts);
-    let mut buffers = Buffers::of(container, json);
+    let mut buffers = Buffers::of(container, json, loader.budget());
     let mut rules = Rules {
         json,
         layouts,

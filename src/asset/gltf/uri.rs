@@ -95,6 +95,14 @@ pub(super) fn media_type(uri: &str) -> Option<String> {
     )
 }
 
+/// Whether a data URI has a parameter of no letters, which RFC 2397 does not allow.
+pub(super) fn has_empty_parameter(uri: &str) -> bool {
+    let rest = scheme(uri).filter(|scheme| scheme.eq_ignore_ascii_case("data"));
+    let rest = rest.and_then(|_| uri.get("data:".len()..));
+    let head = rest.and_then(|rest| rest.split_once(','));
+    head.is_some_and(|(head, _)| head.split(';').skip(1).any(|word| word.trim().is_empty()))
+}
+
 /// The media type and bytes of a data URI (RFC 2397) after its `data:`.
 fn embedded(rest: &str) -> Result<Uri, BadUri> {
     let hint = "export the file again";

@@ -165,3 +165,27 @@ fn opacity_is_a_factor_and_the_alpha_of_an_image() {
         assert_eq!(blends, factor < 1.0 || textured, "{line}");
     }
 }
+
+/// Quadratic time would be minutes.
+#[test]
+fn very_many_names_are_found_and_missed_quickly() {
+    const COUNT: usize = 30_000;
+    let start = std::time::Instant::now();
+    let mut obj = format!("mtllib m.mtl\n{TRIANGLE}");
+    let mut mtl = String::new();
+    for i in 0..COUNT {
+        mtl += &format!("newmtl m{i}\nmap_Kd gone{i}.png\n");
+        obj += &format!("usemtl m{i}\nf 1 2 3\nmtllib lost{i}.mtl\n");
+    }
+    let long = "x".repeat(1 << 20);
+    obj += &format!("usemtl {long}\nf 1 2 3\n");
+    mtl += &format!("newmtl long\nmap_Kd {long}\n");
+    let files = [("a.obj", obj.as_bytes()), ("m.mtl", mtl.as_bytes())];
+    let (mesh, warnings) = Folder::of(&files).load("a.obj");
+    assert_eq!(mesh.expect("a mesh").materials.len(), COUNT);
+    assert!(warnings.len() < 100, "{}", warnings.len());
+    let more = format!(", and {} more like it", COUNT - 20);
+    let counted = warnings.iter().filter(|one| one.message.ends_with(&more));
+    assert_eq!(counted.count(), 2, "{warnings:?}");
+    assert!(start.elapsed().as_secs() < 30, "{:?}", start.elapsed());
+}

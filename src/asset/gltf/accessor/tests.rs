@@ -1,6 +1,7 @@
 use super::*;
 use crate::asset::Loader;
 use crate::asset::gltf::container::Container;
+use crate::asset::limits::Budget;
 use serde_json::{Value, json};
 
 /// One buffer of these bytes, percent-encoded, one view of it, and an accessor.
@@ -16,7 +17,7 @@ fn read(bytes: &[u8], stride: Option<usize>, accessor: Value) -> Result<Elements
         json["bufferViews"][0]["byteStride"] = stride.into();
     }
     let container = Container::open(b"{}".to_vec(), &mut Vec::new())?;
-    let mut buffers = Buffers::of(container, &json);
+    let mut buffers = Buffers::of(container, &json, &Budget::default());
     buffers.load(&mut Loader::new(), "x.gltf".as_ref(), &json, 0)?;
     numbers(&Layouts::of(&json), &buffers, 0)
 }

@@ -63,7 +63,8 @@ pub(in crate::asset::gltf) fn check(rules: &mut Rules, buffers: &Buffers) {
     for (m, mesh) in items(rules.json, "meshes").iter().enumerate() {
         for (p, primitive) in items(mesh, "primitives").iter().enumerate() {
             let pointer = format!("/meshes/{m}/primitives/{p}");
-            attributes(rules, &mut data, primitive, &mut seen, &pointer);
+            let used = rules.uses.meshes.contains(&m);
+            attributes(rules, &mut data, primitive, (used, &mut seen), &pointer);
             indices(rules, &mut data, primitive, (m, &mut seen), &pointer);
         }
     }
@@ -160,7 +161,7 @@ fn attributes(
     rules: &mut Rules,
     data: &mut Data,
     primitive: &Value,
-    seen: &mut BTreeSet<(usize, usize)>,
+    (used, seen): (bool, &mut BTreeSet<(usize, usize)>),
     pointer: &str,
 ) {
     let attributes = primitive.get("attributes").and_then(Value::as_object);
@@ -177,15 +178,17 @@ fn attributes(
             continue;
         };
         let pointer = step(&format!("{pointer}/attributes"), name);
-        if known == "COLOR" {
-            colours(rules, &elements, &pointer);
-        } else {
-            unit(rules, &layout, &elements, &pointer);
+        match known {
+            "COLOR" => colours(rules, &elements, &pointer),
+            // Where a used normal is zero, the reader says what it does about it.
+            "NORMAL" if used => unit(rules, &layout, &elements, (f64::MIN_POSITIVE, &pointer)),
+            _ => unit(rules, &layout, &elements, (0.0, &pointer)),
         }
     }
 }
 
-fn unit(rules: &mut Rules, layout: &Accessor, elements: &Elements, pointer: &str) {
+/// Vectors shorter than `least` are not told of.
+fn unit(rules: &mut Rules, layout: &Accessor, elements: &Elements, (least, pointer): (f64, &str)) {
     let near = if layout.component == Component::F32 {
         UNIT.0
     } else {
@@ -197,7 +200,7 @@ fn unit(rules: &mut Rules, layout: &Accessor, elements: &Elements, pointer: &str
     let (mut count, mut first) = (0, None);
     for (k, v) in elements.components.chunks_exact(elements.width).enumerate() {
         let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
-        if length.is_finite() && (length - 1.0).abs() > near {
+        if length.is_finite() && length >= least && (length - 1.0).abs() > near {
             count += 1;
             first.get_or_insert((k, length));
         }

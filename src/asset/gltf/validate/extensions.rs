@@ -50,7 +50,7 @@ const KNOWN: &[(&str, Verdict)] = &[
     ("KHR_animation_pointer", Nothing),
     ("KHR_audio_emitter", Nothing),
     ("KHR_interactivity", Nothing),
-    ("KHR_materials_variants", Nothing),
+    (VARIANTS, Nothing),
     ("KHR_node_hoverability", Nothing),
     ("KHR_node_selectability", Nothing),
     ("KHR_physics_rigid_bodies", Nothing),
@@ -133,12 +133,23 @@ pub(super) fn is_read(name: &str) -> bool {
     matches!(verdict(name), Read)
 }
 
+/// Whether the tables know all places where an extension may stand.
+pub(super) fn has_places(name: &str) -> bool {
+    is_read(name) || name == VARIANTS
+}
+
+/// Sets of materials to choose from: checked, and not read, since the material of a primitive is the default.
+pub(super) const VARIANTS: &str = "KHR_materials_variants";
+
+/// An array of an extension at the top level.
+pub(super) fn listed<'a>(json: &'a Value, extension: &str, array: &str) -> &'a [Value] {
+    let extensions = json.get("extensions").and_then(|all| all.get(extension));
+    extensions.map_or(&[], |all| items(all, array))
+}
+
 /// The lights of `KHR_lights_punctual`.
 pub(super) fn lights(json: &Value) -> &[Value] {
-    let extensions = json
-        .get("extensions")
-        .and_then(|all| all.get("KHR_lights_punctual"));
-    extensions.map_or(&[], |lights| items(lights, "lights"))
+    listed(json, "KHR_lights_punctual", "lights")
 }
 
 /// The extensions that a file says it uses.

@@ -1,11 +1,13 @@
 //! Rules of cameras, lights, images and textures (specification, sections 3.8 to 3.10; KHR_lights_punctual).
 
+use super::extensions::VARIANTS;
 use super::usages::{self, Purpose};
 use super::{Rules, extensions};
 use crate::asset::codes;
-use crate::asset::gltf::layout::items;
+use crate::asset::gltf::layout::{items, natural};
 use crate::asset::gltf::uses::{element, index};
 use serde_json::Value;
+use std::collections::BTreeSet;
 
 pub(super) fn check(rules: &mut Rules) {
     let json = rules.json;
@@ -27,6 +29,27 @@ pub(super) fn check(rules: &mut Rules) {
     }
     for (i, one) in items(json, "textures").iter().enumerate() {
         texture(rules, one, &format!("/textures/{i}"));
+    }
+}
+
+/// No variant has two materials for one primitive (KHR_materials_variants).
+pub(super) fn variants(rules: &mut Rules, primitive: &Value, pointer: &str) {
+    let extension = primitive
+        .get("extensions")
+        .and_then(|all| all.get(VARIANTS));
+    let mappings = extension.map_or(&[][..], |all| items(all, "mappings"));
+    let mut seen = BTreeSet::new();
+    for (m, mapping) in mappings.iter().enumerate() {
+        let here: BTreeSet<usize> = items(mapping, "variants")
+            .iter()
+            .filter_map(natural)
+            .collect();
+        if let Some(twice) = here.iter().find(|variant| seen.contains(*variant)) {
+            let says = format!("variant {twice} has two materials for this primitive");
+            let pointer = format!("{pointer}/extensions/{VARIANTS}/mappings/{m}/variants");
+            rules.warn(codes::GLTF_LOOK, pointer, says);
+        }
+        seen.extend(here);
     }
 }
 

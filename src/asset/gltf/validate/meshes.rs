@@ -3,7 +3,7 @@
 use super::formats::of_target;
 use super::usages::{self, Purpose};
 use super::walk::step;
-use super::{Rules, extensions, vertices};
+use super::{Rules, extensions, looks, vertices};
 use crate::asset::codes;
 use crate::asset::gltf::layout::{items, natural};
 use crate::asset::gltf::uses::index;
@@ -19,6 +19,7 @@ pub(super) fn check(rules: &mut Rules) {
         for (k, primitive) in items(mesh, "primitives").iter().enumerate() {
             let pointer = format!("{pointer}/primitives/{k}");
             vertices::check(rules, primitive, (used, quantized), &pointer);
+            looks::variants(rules, primitive, &pointer);
             for (t, target) in items(primitive, "targets").iter().enumerate() {
                 let pointer = format!("{pointer}/targets/{t}");
                 target_attributes(rules, primitive, target, quantized, &pointer);

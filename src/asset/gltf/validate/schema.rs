@@ -31,8 +31,8 @@ pub(super) enum Kind {
     Numbers(&'static [usize], Range),
     /// The index of an element of a top-level array.
     Index(&'static str),
-    /// The index of a light of `KHR_lights_punctual`.
-    Light,
+    /// The index of an element of an array of a top-level extension.
+    IndexOf(&'static str, &'static str),
     /// A nonempty array.
     List(&'static Kind),
     /// A nonempty array without repetition.

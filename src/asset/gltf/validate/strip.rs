@@ -114,7 +114,7 @@ impl Strip<'_> {
                     |(name, index): (&String, &Value)| Some((name.clone(), natural(index)?.into()));
                 Some(Value::Object(read.filter_map(whole).collect()))
             }
-            (Kind::Code(_) | Kind::Integer(_) | Kind::Index(_) | Kind::Light, _) => {
+            (Kind::Code(_) | Kind::Integer(_) | Kind::Index(_) | Kind::IndexOf(..), _) => {
                 natural(value).map(Value::from)
             }
             _ => Some(value.clone()),

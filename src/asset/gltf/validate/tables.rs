@@ -1,12 +1,13 @@
 //! The objects of glTF 2.0 (specification, section 5), property by property, and those of the extensions that luxel
 //! reads (KHR registry).
 
+use super::extensions::VARIANTS;
 use super::schema::{
     ANY, Kind, NOT_NEGATIVE, Object, POSITIVE, Property, SHARE, SINE, keep, need, object, skip,
 };
 use Kind::{
-    Attributes, Bool, Code, Index, Integer, Light, List, Number, Numbers, Set, Text, Uri, Version,
-    Word,
+    Attributes, Bool, Code, Index, IndexOf, Integer, List, Number, Numbers, Set, Text, Uri,
+    Version, Word,
 };
 
 const NAME: Property = keep("name", Text);
@@ -31,7 +32,7 @@ pub(super) static ROOT: Object = Object {
         skip("skins", List(&Kind::Object(&SKIN))),
         need("textures", List(&Kind::Object(&TEXTURE))),
     ],
-    extensions: &[("KHR_lights_punctual", &LIGHTS)],
+    extensions: &[("KHR_lights_punctual", &LIGHTS), (VARIANTS, &VARIANT_LIST)],
 };
 
 static ASSET: Object = object(&[
@@ -180,13 +181,16 @@ static MESH: Object = object(&[
 ]);
 
 // An unknown mode is not drawn.
-static PRIMITIVE: Object = object(&[
-    need("attributes", Attributes).required(),
-    need("indices", Index("accessors")),
-    need("material", Index("materials")),
-    keep("mode", Code(&[0, 1, 2, 3, 4, 5, 6])),
-    skip("targets", List(&Attributes)),
-]);
+static PRIMITIVE: Object = Object {
+    properties: &[
+        need("attributes", Attributes).required(),
+        need("indices", Index("accessors")),
+        need("material", Index("materials")),
+        keep("mode", Code(&[0, 1, 2, 3, 4, 5, 6])),
+        skip("targets", List(&Attributes)),
+    ],
+    extensions: &[(VARIANTS, &VARIANT_MAPPINGS)],
+};
 
 static NODE: Object = Object {
     properties: &[
@@ -277,7 +281,21 @@ static SPOT: Object = object(&[
     keep("outerConeAngle", Number(POSITIVE)),
 ]);
 
-static NODE_LIGHT: Object = object(&[keep("light", Light).required()]);
+static NODE_LIGHT: Object =
+    object(&[keep("light", IndexOf("KHR_lights_punctual", "lights")).required()]);
+
+static VARIANT_LIST: Object = object(&[skip("variants", List(&Kind::Object(&VARIANT))).required()]);
+
+static VARIANT: Object = object(&[skip("name", Text).required()]);
+
+static VARIANT_MAPPINGS: Object =
+    object(&[skip("mappings", List(&Kind::Object(&VARIANT_MAPPING))).required()]);
+
+static VARIANT_MAPPING: Object = object(&[
+    skip("material", Index("materials")).required(),
+    skip("variants", Set(&IndexOf(VARIANTS, "variants"))).required(),
+    NAME,
+]);
 
 static EMISSIVE_STRENGTH: Object = object(&[keep("emissiveStrength", Number(NOT_NEGATIVE))]);
 

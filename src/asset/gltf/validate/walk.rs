@@ -40,7 +40,8 @@ pub(super) fn is_of(json: &Value, value: &Value, kind: &Kind) -> bool {
             all.iter().all(is_number) && (lengths.is_empty() || lengths.contains(&all.len()))
         }),
         Kind::Index(array) => natural(value).is_some_and(|index| index < items(json, array).len()),
-        Kind::Light => natural(value).is_some_and(|index| index < extensions::lights(json).len()),
+        Kind::IndexOf(extension, array) => natural(value)
+            .is_some_and(|index| index < extensions::listed(json, extension, array).len()),
         Kind::List(_) | Kind::Set(_) => value.is_array(),
         Kind::Object(_) | Kind::Attributes => value.is_object(),
     }
@@ -90,7 +91,7 @@ fn meant(kind: &Kind) -> String {
             format!("an array of {} numbers", lengths.join(", "))
         }
         Kind::Index(array) => format!("an index into {array:?}"),
-        Kind::Light => "an index into the lights of KHR_lights_punctual".into(),
+        Kind::IndexOf(extension, array) => format!("an index into the {array} of {extension}"),
         Kind::List(_) | Kind::Set(_) => "an array".into(),
         Kind::Object(_) | Kind::Attributes => "an object".into(),
     }
@@ -136,7 +137,7 @@ impl Walk<'_> {
 
     fn value(&mut self, value: &Value, kind: &Kind, care: Care, pointer: &str) {
         if !is_of(self.json, value, kind) {
-            let dangling = matches!(kind, Kind::Index(_) | Kind::Light) && value.is_u64();
+            let dangling = matches!(kind, Kind::Index(_) | Kind::IndexOf(..)) && value.is_u64();
             let (code, says) = if dangling {
                 let array = meant(kind);
                 let says = format!("{value} is not {array}: there is no such element");
@@ -163,6 +164,10 @@ impl Walk<'_> {
             }
             (Kind::List(of) | Kind::Set(of), Value::Array(all)) => {
                 self.list(all, of, matches!(kind, Kind::Set(_)), care, pointer);
+            }
+            (Kind::Uri, Value::String(text)) if uri::has_empty_parameter(text) => {
+                let says = "a data URI with an empty parameter (`;;`)";
+                self.report.warning(codes::GLTF_ODD_VALUE, pointer, says);
             }
             (Kind::Object(object), Value::Object(map)) => self.object(map, object, care, pointer),
             (Kind::Attributes, Value::Object(map)) => self.attributes(map, care, pointer),
@@ -263,7 +268,7 @@ impl Walk<'_> {
                     let says = format!("{} is not an object", shown(value));
                     self.report.warning(codes::GLTF_ODD_VALUE, &pointer, says);
                 }
-                None if extensions::is_read(name) => {
+                None if extensions::has_places(name) => {
                     let says = format!("the extension {name:?} has no place here");
                     self.report.warning(codes::GLTF_DECLARATION, &pointer, says);
                 }

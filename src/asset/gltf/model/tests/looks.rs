@@ -2,6 +2,7 @@
 
 use super::{Draft, png};
 use crate::asset::{AlphaMode, Filter, MeshMaterial, Scattering, TextureUse, Wrap};
+use crate::diag::Diagnostic;
 use serde_json::{Value, json};
 
 /// A material without a word, and with no texture coordinates.
@@ -205,6 +206,15 @@ fn a_missing_image_is_a_warning_and_a_damaged_one_an_error() {
     let errors = draft.read().map(|_| ()).expect_err("an error");
     assert_eq!(errors[0].code, "E108", "{errors:?}");
     assert_eq!(errors[0].pointer.as_deref(), Some("/images/0/uri"));
+    // Both files are named: the one that is damaged, and the one that names it.
+    let names_image = |one: &Diagnostic| one.message.contains("wood.png");
+    let in_gltf = |one: &Diagnostic| {
+        let ending = one.file.as_ref().and_then(|file| file.extension());
+        ending.is_some_and(|ending| ending == "gltf" || ending == "glb")
+    };
+    for one in [&read.warnings[0], &errors[0]] {
+        assert!(names_image(one) && in_gltf(one), "{one:?}");
+    }
 }
 
 #[test]

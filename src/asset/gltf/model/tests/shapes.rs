@@ -319,3 +319,29 @@ fn indices_and_vertices_that_cannot_be_used_are_errors_with_a_place() {
         );
     }
 }
+
+#[test]
+fn an_accessor_of_zeros_is_refused_by_the_budget() {
+    let mut draft = Draft::triangle();
+    draft.indices(&[0, 1, 2]);
+    let zeros = json!({ "componentType": 5126, "type": "VEC3", "count": 1_000_000_000,
+        "min": [0, 0, 0], "max": [0, 0, 0] });
+    let accessors = draft.root["accessors"].as_array_mut().expect("accessors");
+    accessors.push(zeros);
+    let index = accessors.len() - 1;
+    draft.attribute("POSITION", index);
+    let errors = draft.read().map(|_| ()).expect_err("an error");
+    assert_eq!(errors[0].code, "E111", "{errors:?}");
+    assert_eq!(errors[0].pointer, Some(format!("/accessors/{index}")));
+    let hint = errors[0].hint.as_deref().unwrap_or_default();
+    // 24 bytes for each of three components and their double precision: 24 GB.
+    assert!(hint.contains("--max-memory 32G"), "{hint}");
+}
+
+#[test]
+fn a_zero_normal_is_told_of_once() {
+    let mut draft = Draft::triangle();
+    let normals = draft.floats(&[[0.0; 3], [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]]);
+    draft.attribute("NORMAL", normals);
+    assert_eq!(draft.read().expect("a model").codes(), ["W106"]);
+}

@@ -129,3 +129,78 @@ fn images() {
     let with_extension = [webp, ("/extensionsUsed/2", json!("EXT_texture_webp"))];
     tells("W122", "/extensionsUsed/2", &with_extension);
 }
+
+#[test]
+fn variants() {
+    const LIST: &str = "/extensions/KHR_materials_variants";
+    const MAPPINGS: &str = "/meshes/0/primitives/0/extensions/KHR_materials_variants/mappings";
+    let with = |list: Value, mappings: Value| {
+        [
+            ("/extensionsUsed/9", json!("KHR_materials_variants")),
+            (LIST, list),
+            (
+                "/meshes/0/primitives/0/extensions",
+                json!({ "KHR_materials_variants": mappings }),
+            ),
+        ]
+    };
+    let two = || json!({ "variants": [{ "name": "a" }, { "name": "b" }] });
+    let map = |variants: Value| json!({ "mappings": [{ "material": 0, "variants": variants }] });
+    silent(&with(two(), map(json!([0, 1]))));
+    let place = |end: &str| format!("{MAPPINGS}{end}");
+    tells(
+        "W120",
+        &place("/0/variants/1"),
+        &with(two(), map(json!([0, 2]))),
+    );
+    tells("W124", &place("/0/variants"), &with(two(), map(json!([]))));
+    tells(
+        "W120",
+        &place("/0"),
+        &with(two(), json!({ "mappings": [{ "variants": [0] }] })),
+    );
+    let twice = json!({ "mappings": [{ "material": 0, "variants": [0] }, { "material": 0, "variants": [1, 0] }] });
+    tells("W133", &place("/1/variants"), &with(two(), twice));
+    let one = || map(json!([0]));
+    tells("W120", LIST, &with(json!({}), one()));
+    tells(
+        "W124",
+        &format!("{LIST}/variants"),
+        &with(json!({ "variants": [] }), one()),
+    );
+    let unnamed = json!({ "variants": [{ "name": 1 }, { "name": "b" }] });
+    tells(
+        "W120",
+        &format!("{LIST}/variants/0/name"),
+        &with(unnamed, one()),
+    );
+    tells(
+        "W123",
+        "/meshes/0/extensions/KHR_materials_variants",
+        &[
+            ("/extensionsUsed/9", json!("KHR_materials_variants")),
+            (
+                "/meshes/0/extensions",
+                json!({ "KHR_materials_variants": {} }),
+            ),
+        ],
+    );
+}
+
+#[test]
+#[cfg(unix)]
+fn an_image_that_is_a_pipe_is_not_waited_for() {
+    let folder = std::env::temp_dir().join(format!("luxel-pipe-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let pipe = folder.join("pipe.png");
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+    assert!(made.is_ok_and(|status| status.success()));
+    // Used and unused.
+    for image in ["/images/0", "/images/1"] {
+        let uri = json!({ "uri": pipe.to_string_lossy() });
+        let found = super::found(&super::with(&[(image, uri)]));
+        assert!(found.iter().all(|one| one.code == "W126"), "{found:?}");
+        assert_eq!(found.is_empty(), image == "/images/0");
+    }
+    let _ = std::fs::remove_dir_all(folder);
+}

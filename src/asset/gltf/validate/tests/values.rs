@@ -287,3 +287,13 @@ fn the_typed_document_has_what_is_read() {
         assert_eq!(document.animations().count() + document.skins().count(), 0);
     }
 }
+
+#[test]
+fn an_empty_parameter_of_a_data_uri() {
+    let uri = right()["buffers"][0]["uri"].to_string();
+    let uri = uri.trim_matches('"');
+    let odd = uri.replace(";base64", ";;base64");
+    tells("W120", "/buffers/0/uri", &[("/buffers/0/uri", json!(odd))]);
+    let named = uri.replace(";base64", ";a=b;base64");
+    silent(&[("/buffers/0/uri", json!(named))]);
+}
