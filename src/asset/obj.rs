@@ -183,14 +183,18 @@ fn refuse_bad_vertices(source: &str, scan: &Scan) -> Result<(), Diagnostic> {
 /// A polygon of more corners than can be cut.
 fn cut_polygons(source: &str, scan: &mut Scan) -> Result<Found, Diagnostic> {
     let mut tangled = Found::default();
-    let (mut points, mut triangles, mut ring) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut points, mut flat) = (Vec::new(), Vec::new());
+    let (mut triangles, mut ring) = (Vec::new(), Vec::new());
     for polygon in &scan.polygons {
         let laid = 3 * polygon.first..3 * (polygon.first + polygon.corners - 2);
         let corners = &mut scan.corners[laid.clone()];
         points.clear();
         points.extend(rim(corners).map(|index| scan.positions[index as usize]));
+        if triangulate::fan_covers(&points, &mut flat) {
+            continue;
+        }
         triangles.clear();
-        match triangulate::triangulate(&points, &mut triangles) {
+        match triangulate::cut(&flat, &mut triangles) {
             Ok(()) => {}
             Err(Trouble::Tangled) => tangled.add(polygon.first),
             Err(Trouble::TooLarge) => return Err(too_many_corners(source, polygon)),

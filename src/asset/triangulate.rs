@@ -14,39 +14,35 @@ pub(super) enum Trouble {
     Tangled,
 }
 
-/// Appends the triangles of a polygon as triples of indices into `points`, in the winding of the polygon.
+/// Whether the fan around the first corner covers a polygon: every one of its triangles turns as the polygon does.
+/// `flat` is left with the polygon in its best plane.
+pub(super) fn fan_covers(points: &[DVec3], flat: &mut Vec<DVec2>) -> bool {
+    project(points, flat);
+    let rest = flat.get(1..).unwrap_or_default();
+    rest.windows(2)
+        .all(|pair| turn(flat[0], pair[0], pair[1]) > 0.0)
+}
+
+/// Appends the triangles of a polygon that no fan covers, as triples of indices into `flat`, in the winding of the
+/// polygon.
 ///
 /// A polygon of n corners gives n − 2 triangles, some perhaps without area. Equal input gives equal triangles.
-pub(super) fn triangulate(points: &[DVec3], out: &mut Vec<[usize; 3]>) -> Result<(), Trouble> {
-    let n = points.len();
-    if n == 3 {
-        out.push([0, 1, 2]);
-        return Ok(());
-    }
-    let flat = project(points);
-    let fan = (1..n - 1).map(|i| [0, i, i + 1]);
-    let covers = fan
-        .clone()
-        .all(|[a, b, c]| turn(flat[a], flat[b], flat[c]) > 0.0);
-    if covers {
-        out.extend(fan);
-        return Ok(());
-    }
-    if n > MAX_CONCAVE_CORNERS {
+pub(super) fn cut(flat: &[DVec2], out: &mut Vec<[usize; 3]>) -> Result<(), Trouble> {
+    if flat.len() > MAX_CONCAVE_CORNERS {
         return Err(Trouble::TooLarge);
     }
-    clip_ears(&flat, out)
+    clip_ears(flat, out)
 }
 
 /// Drops the coordinate along which the polygon's normal (Newell's) is longest: coordinates stay exact, and the
 /// polygon turns counter-clockwise.
-fn project(points: &[DVec3]) -> Vec<DVec2> {
+fn project(points: &[DVec3], flat: &mut Vec<DVec2>) {
     let origin = points[0];
-    let mut normal = DVec3::ZERO;
-    for (i, &a) in points.iter().enumerate() {
-        let b = points[(i + 1) % points.len()];
-        normal += (a - origin).cross(b - origin);
-    }
+    // The edges at the origin span nothing.
+    let normal: DVec3 = points
+        .windows(2)
+        .map(|edge| (edge[0] - origin).cross(edge[1] - origin))
+        .sum();
     let size = normal.abs();
     let flatten = |p: DVec3| {
         if size.x >= size.y && size.x >= size.z {
@@ -57,13 +53,11 @@ fn project(points: &[DVec3]) -> Vec<DVec2> {
             (p.x, p.y, normal.z)
         }
     };
-    points
-        .iter()
-        .map(|&p| {
-            let (u, v, along) = flatten(p - origin);
-            DVec2::new(if along < 0.0 { -u } else { u }, v)
-        })
-        .collect()
+    flat.clear();
+    flat.extend(points.iter().map(|&p| {
+        let (u, v, along) = flatten(p - origin);
+        DVec2::new(if along < 0.0 { -u } else { u }, v)
+    }));
 }
 
 /// Twice the signed area of a triangle: above 0 counter-clockwise.
@@ -151,6 +145,15 @@ mod tests {
             .iter()
             .map(|&(x, y)| DVec3::new(x, y, 0.5 * x - 2.0 * y))
             .collect()
+    }
+
+    fn triangulate(points: &[DVec3], out: &mut Vec<[usize; 3]>) -> Result<(), Trouble> {
+        let mut flat = Vec::new();
+        if fan_covers(points, &mut flat) {
+            out.extend((1..points.len() - 1).map(|i| [0, i, i + 1]));
+            return Ok(());
+        }
+        cut(&flat, out)
     }
 
     /// Triangles, and the sum of their areas as seen along z, each counted as positive.
