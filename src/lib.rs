@@ -69,7 +69,8 @@
 //!   path in 10⁵ bounces in the corners of a closed box.
 //! * The metadata of an EXR stand in one text attribute, since the writer keeps attributes in a hash map, whose order would
 //!   make equal renders unequal files.
-//! * tobj reads the numbers of vertices, as cleaned lines, a block at a time. Faces are read by a scan of our own, which
+//! * tobj reads the numbers of vertices that are not plain decimals, as cleaned lines, a block at a time; plain ones are
+//!   read where they stand, to the same bits, which takes a third off the loading. Faces are read by a scan of our own, which
 //!   has the line at hand that an error is about, resolves every index and gives a corner what its own token names: the
 //!   parser would fill in the rest, and knows no lines. MTL files are read by a reader of our own. Triangles without area
 //!   are dropped on reading, so that the `prim` channel counts those that are kept.

@@ -4,7 +4,7 @@
 //! file and line, or file and JSON pointer.
 //!
 //! ```text
-//!  OBJ ─▶ text ─▶ scan (lines, indices; numbers by tobj) ─▶ obj (polygons cut, triangles in file order) ─▶ Mesh
+//!  OBJ ─▶ text ─▶ scan (lines, indices, plain numbers; others by tobj) ─▶ obj (polygons cut, triangles in file order) ─▶ Mesh
 //!  MTL ─▶ text ─▶ mtl ─▶ MeshMaterial        PNG, JPEG ─▶ texture ─▶ Texture
 //!  glTF, GLB ─▶ gltf (its own picture) ─▶ Model of nodes, Meshes, MeshMaterials, Textures
 //! ```
@@ -21,6 +21,7 @@ mod loader;
 mod materials;
 mod mtl;
 pub mod normals;
+mod numbers;
 mod obj;
 mod paths;
 mod places;

@@ -1,4 +1,5 @@
-//! The numbers of `v`, `vt` and `vn` lines, through `tobj`, a block of lines at a time.
+//! The numbers of `v`, `vt` and `vn` lines that are not plain (see [`super::numbers`]), through `tobj`, a block of lines at
+//! a time.
 //!
 //! tobj gives the vertices that faces use, in the order in which they do. So each block of lines ends with one made-up
 //! face that uses all of them in order. Blocks keep tobj's tables of indices in the cache, and a large file from being
@@ -9,7 +10,7 @@ use crate::diag::Diagnostic;
 use tobj::LoadError;
 
 /// Lines of a block.
-const BLOCK: usize = 4096;
+pub(super) const BLOCK: usize = 4096;
 
 /// The keywords of the kinds of line, in the order of the indices of a corner.
 pub(super) const KINDS: [&str; 3] = ["v", "vt", "vn"];
@@ -18,7 +19,8 @@ pub(super) const KINDS: [&str; 3] = ["v", "vt", "vn"];
 pub(super) struct Records {
     kind: usize,
     text: String,
-    count: usize,
+    /// What each line is among all of its kind.
+    places: Vec<usize>,
     /// The face of the block before, which is the next one's too if that is as long.
     face: (usize, String),
 }
@@ -29,14 +31,14 @@ impl Records {
         Records {
             kind,
             text: String::new(),
-            count: 0,
+            places: Vec::new(),
             face: (0, String::new()),
         }
     }
 
     /// Adds a line of these numbers, all of which count.
-    pub(super) fn push(&mut self, numbers: &[&str]) {
-        if self.count == 0 && self.kind > 0 {
+    pub(super) fn push(&mut self, place: usize, numbers: &[&str]) {
+        if self.places.is_empty() && self.kind > 0 {
             // A corner of a face needs a position too.
             self.text.push_str("v 0 0 0\n");
         }
@@ -46,24 +48,25 @@ impl Records {
             self.text.push_str(number);
         }
         self.text.push('\n');
-        self.count += 1;
+        self.places.push(place);
     }
 
     /// Whether the block should be read now.
     pub(super) fn is_full(&self) -> bool {
-        self.count >= BLOCK
+        self.places.len() >= BLOCK
     }
 
     /// Number of lines that wait.
     pub(super) fn len(&self) -> usize {
-        self.count
+        self.places.len()
     }
 
-    /// Reads the lines; `N` numbers for each. Numbers that cannot be read are NaN: it matters only if a face uses them.
+    /// Reads the lines; `N` numbers for each, and its place. Numbers that cannot be read are NaN: it matters only if a
+    /// face uses them.
     ///
     /// # Errors
     /// If the parser does not do what was asked of it: a bug of luxel.
-    pub(super) fn read<const N: usize>(&mut self) -> Result<Vec<[f64; N]>, Diagnostic> {
+    pub(super) fn read<const N: usize>(&mut self) -> Result<Vec<(usize, [f64; N])>, Diagnostic> {
         let lines = self.text.len();
         self.push_face();
         let model = read(&self.text).or_else(|_| {
@@ -78,29 +81,30 @@ impl Records {
             1 => mesh.texcoords,
             _ => mesh.normals,
         };
-        if numbers.len() != N * self.count {
+        if numbers.len() != N * self.len() {
             let found = numbers.len() / N;
             let kind = KINDS[self.kind];
             return Err(says(format!(
                 "the OBJ parser gave {found} `{kind}`, not {}",
-                self.count
+                self.len()
             )));
         }
         self.text.clear();
-        self.count = 0;
-        Ok(numbers.as_chunks().0.to_vec())
+        let places = self.places.drain(..);
+        Ok(places.zip(numbers.as_chunks().0.iter().copied()).collect())
     }
 
     /// A face of all the lines in order, of at least three corners: those of fewer are not faces to the parser.
     fn push_face(&mut self) {
+        let count = self.places.len();
         let (corners, face) = &mut self.face;
-        if *corners != self.count {
-            *corners = self.count;
+        if *corners != count {
+            *corners = count;
             face.clear();
             face.push('f');
-            for corner in 1..=self.count.max(3) {
+            for corner in 1..=count.max(3) {
                 face.push_str([" ", " 1/", " 1//"][self.kind]);
-                face.push_str(&corner.min(self.count).to_string());
+                face.push_str(&corner.min(count).to_string());
             }
             face.push('\n');
         }
@@ -156,14 +160,15 @@ mod tests {
             for i in 0..count {
                 let words = [number(i), number(i + 1), number(0)];
                 let words = words.each_ref().map(String::as_str);
-                positions.push(&words);
-                uvs.push(&words[..2]);
-                normals.push(&words);
+                positions.push(i, &words);
+                uvs.push(2 * i, &words[..2]);
+                normals.push(i, &words);
             }
             assert_eq!(positions.is_full(), count == BLOCK);
-            let expect = |i: usize| [i as f64 + 0.5, i as f64 + 1.5, 0.5];
-            let expect: Vec<[f64; 3]> = (0..count).map(expect).collect();
-            let two: Vec<[f64; 2]> = expect.iter().map(|&[u, v, _]| [u, v]).collect();
+            let expect = |i: usize| (i, [i as f64 + 0.5, i as f64 + 1.5, 0.5]);
+            let expect: Vec<(usize, [f64; 3])> = (0..count).map(expect).collect();
+            let two = expect.iter().map(|&(i, [u, v, _])| (2 * i, [u, v]));
+            let two: Vec<(usize, [f64; 2])> = two.collect();
             assert_eq!(positions.read::<3>().as_ref(), Ok(&expect));
             assert_eq!(normals.read::<3>().as_ref(), Ok(&expect));
             assert_eq!(uvs.read::<2>(), Ok(two));
@@ -174,11 +179,14 @@ mod tests {
     #[test]
     fn what_is_no_number_is_nan_and_spoils_nothing_else() {
         let mut records = Records::of(0);
-        records.push(&["1", "x", "3"]);
-        records.push(&["2", "4", "6", "2"]);
-        records.push(&["2", "4", "6", "0"]);
+        records.push(0, &["1", "x", "3"]);
+        records.push(1, &["2", "4", "6", "2"]);
+        records.push(2, &["2", "4", "6", "0"]);
         let read = records.read::<3>().expect("numbers");
-        assert!(read[0][1].is_nan() && read[2][0].is_nan());
-        assert_eq!((read[0][0], read[1]), (1.0, [1.0, 2.0, 3.0]));
+        let [(_, first), second, (_, third)] = read[..] else {
+            panic!("{read:?}");
+        };
+        assert!(first[1].is_nan() && third[0].is_nan());
+        assert_eq!((first[0], second), (1.0, (1, [1.0, 2.0, 3.0])));
     }
 }

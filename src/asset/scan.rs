@@ -2,8 +2,9 @@
 //!
 //! The parser (`tobj`) gives no line numbers, fails on comments and continuations, and fills in the attributes that a
 //! face lacks from its neighbours. So faces are read here, with the line at hand that an error is about: every index is
-//! resolved, and every corner has exactly the attributes that its own token names. The numbers of the vertices go
-//! through the parser as lines that it can read (see [`super::records`]).
+//! resolved, and every corner has exactly the attributes that its own token names. The numbers of the vertices are read
+//! here where they are plain (see [`super::numbers`]), which makes loading a third faster; all others go through the
+//! parser as lines that it can read (see [`super::records`]).
 //!
 //! Leaves: triangles in file order, each face laid out as a fan. Where a fan does not cover its polygon, the next step
 //! cuts it anew in place: a polygon of n corners is n − 2 triangles either way.
@@ -12,7 +13,8 @@ use super::codes;
 use super::corner::{NONE, PerCorner};
 use super::face::{Corner, corner, plain_corners};
 use super::limits::Budget;
-use super::records::{KINDS, Records};
+use super::numbers::plain_numbers;
+use super::records::{BLOCK, KINDS, Records};
 use super::text::{Line, Lines};
 use crate::diag::Diagnostic;
 use crate::math::{DVec2, DVec3};
@@ -101,6 +103,7 @@ pub(super) fn scan(
         scan: Scan::default(),
         records: [0, 1, 2].map(Records::of),
         counts: [0; 3],
+        charged: [0; 3],
         forward: Vec::new(),
         errors: Vec::new(),
         corners: Vec::new(),
@@ -119,6 +122,8 @@ struct Scanner<'a> {
     records: [Records; 3],
     /// Lines of each of [`KINDS`] so far.
     counts: [usize; 3],
+    /// How many of them the budget knows.
+    charged: [usize; 3],
     /// Offsets of faces with a reference beyond what the file had defined so far: an error if the file never does.
     forward: Vec<usize>,
     errors: Vec<Diagnostic>,
@@ -151,6 +156,21 @@ impl Scanner<'_> {
     /// Takes the numbers that count: of a `v` line three, or four where the fourth is the weight `w` (five or more are
     /// vertex colours); of `vt` two, the second being optional; of `vn` three.
     fn vertex(&mut self, line: &Line<'_>, kind: usize) -> Result<(), Diagnostic> {
+        self.counts[kind] += 1;
+        if self.counts[kind] - self.charged[kind] == BLOCK {
+            self.charge(kind)?;
+        }
+        match (kind, plain_numbers(line.rest.as_bytes())) {
+            (0, Some(([x, y, z, ..], 3 | 5..))) => self.scan.positions.push(DVec3::new(x, y, z)),
+            (1, Some(([u, v, ..], 2..))) => self.scan.uvs.values.push(DVec2::new(u, v)),
+            (2, Some(([x, y, z, ..], 3..))) => self.scan.normals.values.push(DVec3::new(x, y, z)),
+            _ => return self.record(line, kind),
+        }
+        Ok(())
+    }
+
+    /// Keeps a vertex for the parser, and its place.
+    fn record(&mut self, line: &Line<'_>, kind: usize) -> Result<(), Diagnostic> {
         let values = line.values();
         let (count, ends) = words(values);
         let (least, kept) = match (kind, count) {
@@ -159,7 +179,12 @@ impl Scanner<'_> {
             (1, _) => (2, 2),
             _ => (3, 3),
         };
-        self.counts[kind] += 1;
+        let place = self.counts[kind] - 1;
+        match kind {
+            0 => self.scan.positions.push(DVec3::NAN),
+            1 => self.scan.uvs.values.push(DVec2::NAN),
+            _ => self.scan.normals.values.push(DVec3::NAN),
+        }
         if count < least {
             let says = format!("`{}` needs {least} numbers, not {count}", KINDS[kind]);
             self.error(codes::BAD_NUMBER, line.at, says);
@@ -167,9 +192,9 @@ impl Scanner<'_> {
         }
         let numbers = &values[..ends[kept - 1]];
         if (kind, count) == (1, 1) {
-            self.records[kind].push(&[numbers, "0"]);
+            self.records[kind].push(place, &[numbers, "0"]);
         } else {
-            self.records[kind].push(&[numbers]);
+            self.records[kind].push(place, &[numbers]);
         }
         if self.records[kind].is_full() {
             self.read(kind)
@@ -178,28 +203,27 @@ impl Scanner<'_> {
         }
     }
 
-    /// Has the parser read the vertices that wait.
-    fn read(&mut self, kind: usize) -> Result<(), Diagnostic> {
-        let records = &mut self.records[kind];
-        if self.counts[kind] >= NONE as usize {
+    /// Charges the vertices of a kind that are not charged yet.
+    fn charge(&mut self, kind: usize) -> Result<(), Diagnostic> {
+        let count = self.counts[kind];
+        if count >= NONE as usize {
             let says = format!("the file has more than {NONE} `{}` lines", KINDS[kind]);
             return Err(Diagnostic::error(codes::TOO_LARGE, says));
         }
-        let bytes = (records.len() * RECORD_BYTES[kind]) as u64;
-        self.budget.charge(bytes, "the mesh so far", self.path)?;
+        let bytes = (count - self.charged[kind]) * RECORD_BYTES[kind];
+        self.charged[kind] = count;
+        self.budget
+            .charge(bytes as u64, "the mesh so far", self.path)
+    }
+
+    /// Has the parser read the vertices that wait.
+    fn read(&mut self, kind: usize) -> Result<(), Diagnostic> {
+        let records = &mut self.records[kind];
         let scan = &mut self.scan;
         match kind {
-            0 => scan
-                .positions
-                .extend(records.read()?.into_iter().map(DVec3::from_array)),
-            1 => scan
-                .uvs
-                .values
-                .extend(records.read()?.into_iter().map(DVec2::from_array)),
-            _ => scan
-                .normals
-                .values
-                .extend(records.read()?.into_iter().map(DVec3::from_array)),
+            0 => put(&mut scan.positions, records.read()?, DVec3::from_array),
+            1 => put(&mut scan.uvs.values, records.read()?, DVec2::from_array),
+            _ => put(&mut scan.normals.values, records.read()?, DVec3::from_array),
         }
         Ok(())
     }
@@ -281,6 +305,7 @@ impl Scanner<'_> {
 
     fn finish(mut self) -> Result<Scan, Vec<Diagnostic>> {
         for kind in 0..KINDS.len() {
+            self.charge(kind).map_err(|fatal| vec![fatal])?;
             if self.records[kind].len() > 0 {
                 self.read(kind).map_err(|fatal| vec![fatal])?;
             }
@@ -326,6 +351,19 @@ impl Scanner<'_> {
                 None if (1..KINDS.len()).any(beyond) => self.scan.absent.add(at),
                 None => {}
             }
+        }
+    }
+}
+
+/// Puts values where they belong.
+fn put<T, const N: usize>(
+    values: &mut [T],
+    read: Vec<(usize, [f64; N])>,
+    of: impl Fn([f64; N]) -> T,
+) {
+    for (place, numbers) in read {
+        if let Some(value) = values.get_mut(place) {
+            *value = of(numbers);
         }
     }
 }
