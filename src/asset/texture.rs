@@ -4,13 +4,22 @@
 
 use super::{Texture, codes};
 use crate::diag::Diagnostic;
-use image::{ImageDecoder, ImageError, ImageFormat, ImageReader};
+use image::codecs::jpeg::JpegDecoder;
+use image::codecs::png::PngDecoder;
+use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageResult, Limits};
 use std::io::Cursor;
 use std::path::Path;
 use std::sync::Arc;
 
 /// Bytes per texel while colour and alpha are told apart: both together and each for itself.
 const SPLIT_BYTES: u64 = 8;
+
+/// What a colour profile of a PNG image may unpack to: the largest in use take some 2 MiB. A larger one is skipped, as all
+/// profiles are later.
+const PNG_PROFILE_BYTES: u64 = 4 << 20;
+/// Where the width stands in a PNG image (PNG third edition, sections 5.2 and 11.2.1), and the largest texel.
+const PNG_WIDTH: std::ops::Range<usize> = 16..20;
+const PNG_TEXEL_BYTES: u64 = 8;
 
 /// An image of which only the header was read.
 pub(super) struct Image<'a> {
@@ -40,7 +49,7 @@ impl<'a> Image<'a> {
             }
             _ => return Err(unsuitable("neither a PNG nor a JPEG image")),
         };
-        let header = reader(bytes, format).into_decoder();
+        let header = decoder(bytes, format);
         let header = header.map_err(|e| corrupt(path, &e))?;
         let (width, height) = header.dimensions();
         if width == 0 || height == 0 {
@@ -69,10 +78,11 @@ impl<'a> Image<'a> {
             .saturating_mul(if self.has_alpha { 4 } else { 3 })
     }
 
-    /// Bytes while it is decoded.
+    /// Bytes while it is decoded, its file included.
     pub(super) fn passing(&self) -> u64 {
         let split = self.texels().saturating_mul(SPLIT_BYTES);
-        self.decoded.saturating_add(split)
+        let file = self.bytes.len() as u64;
+        self.decoded.saturating_add(split).saturating_add(file)
     }
 
     fn texels(&self) -> u64 {
@@ -85,7 +95,7 @@ impl<'a> Image<'a> {
     /// # Errors
     /// A damaged file.
     pub(super) fn decode(self) -> Result<Texture, Diagnostic> {
-        let image = reader(self.bytes, self.format).decode();
+        let image = decoder(self.bytes, self.format).and_then(DynamicImage::from_decoder);
         let image = image.map_err(|e| corrupt(self.path, &e))?;
         let (texels, alpha) = if self.has_alpha {
             split(&image.into_rgba8())
@@ -102,11 +112,19 @@ impl<'a> Image<'a> {
     }
 }
 
-/// Without the crate's own limits: memory is charged before an image is decoded.
-fn reader(bytes: &[u8], format: ImageFormat) -> ImageReader<Cursor<&[u8]>> {
-    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
-    reader.no_limits();
-    reader
+/// Reads the header. Memory for the texels is charged before they are decoded; that for what else a PNG image may hold is
+/// limited here, since a profile of a thousand bytes can unpack to a million.
+fn decoder(bytes: &[u8], format: ImageFormat) -> ImageResult<Box<dyn ImageDecoder + '_>> {
+    let reader = Cursor::new(bytes);
+    if format == ImageFormat::Jpeg {
+        return Ok(Box::new(JpegDecoder::new(reader)?));
+    }
+    let mut limits = Limits::no_limits();
+    let width = bytes.get(PNG_WIDTH).and_then(|bytes| bytes.try_into().ok());
+    let row = PNG_TEXEL_BYTES * u64::from(width.map_or(0, u32::from_be_bytes));
+    // Texts stay as they are packed; their buffer grows by doubling before they are copied out of it.
+    limits.max_alloc = Some(PNG_PROFILE_BYTES + 3 * bytes.len() as u64 + row);
+    Ok(Box::new(PngDecoder::with_limits(reader, limits)?))
 }
 
 fn corrupt(path: &Path, error: &ImageError) -> Diagnostic {
