@@ -27,11 +27,16 @@ impl Default for Limits {
 pub(super) struct Budget {
     limits: Limits,
     used: u64,
+    /// What is in memory for as long as a file is read: its own bytes.
+    held: u64,
 }
 
 impl Budget {
     pub(super) fn of(limits: Limits) -> Budget {
-        Budget { limits, used: 0 }
+        Budget {
+            limits,
+            ..Budget::default()
+        }
     }
 
     /// Takes `bytes` for `what`, a part of the file `path`.
@@ -50,11 +55,11 @@ impl Budget {
     /// If they are not.
     pub(super) fn allow(&self, bytes: u64, what: &str, path: &Path) -> Result<(), Diagnostic> {
         let limit = self.limits.memory;
-        let needed = self.used.saturating_add(bytes);
-        if needed <= limit {
+        let taken = self.used.saturating_add(self.held);
+        if self.has(bytes) {
             return Ok(());
         }
-        let before = match self.used {
+        let before = match taken {
             0 => String::new(),
             used => format!(" besides the {} that files take already", size(used)),
         };
@@ -67,8 +72,29 @@ impl Budget {
             .in_file(path)
             .hint(format!(
                 "raise the limit if this is meant: `--max-memory {}`",
-                enough(needed)
+                enough(taken.saturating_add(bytes))
             )))
+    }
+
+    /// Whether `bytes` are left.
+    pub(super) fn has(&self, bytes: u64) -> bool {
+        let taken = self.used.saturating_add(self.held);
+        taken.saturating_add(bytes) <= self.limits.memory
+    }
+
+    /// Gives back what was charged for something that came to nothing.
+    pub(super) fn give_back(&mut self, bytes: u64) {
+        self.used = self.used.saturating_sub(bytes);
+    }
+
+    /// Counts the bytes of a file that is being read, until [`Budget::let_go`].
+    pub(super) fn hold(&mut self, bytes: u64) {
+        self.held = self.held.saturating_add(bytes);
+    }
+
+    /// The bytes of the file are gone again.
+    pub(super) fn let_go(&mut self, bytes: u64) {
+        self.held = self.held.saturating_sub(bytes);
     }
 
     /// Bytes taken so far.
@@ -122,6 +148,12 @@ mod tests {
             Some("raise the limit if this is meant: `--max-memory 8G`")
         );
         assert_eq!(budget.used(), 4 << 30);
+        budget.give_back(2 << 30);
+        budget.hold(1 << 30);
+        assert!(budget.allow((1 << 30) + 1, "the image", path).is_err());
+        assert_eq!(budget.allow(1 << 30, "the image", path), Ok(()));
+        budget.let_go(1 << 30);
+        assert_eq!(budget.charge(2 << 30, "the image", path), Ok(()));
         for huge in [u64::MAX, u64::MAX - (4 << 30)] {
             assert!(budget.allow(huge, "the image", path).is_err());
         }

@@ -4,16 +4,21 @@ use super::limits::{Budget, Limits};
 use super::materials::Source;
 use super::paths::{canonical, similar_file};
 use super::reading::Reading;
+use super::scan::{self, Scan};
 use super::told::Told;
 use super::{
-    AssetStore, Mesh, MeshId, Model, ModelId, Texture, TextureId, codes, gltf, obj, scan, text,
-    texture,
+    AssetStore, Mesh, MeshId, Model, ModelId, Texture, TextureId, codes, gltf, obj, text, texture,
 };
 use crate::diag::Diagnostic;
+use rayon::prelude::*;
 use sha2::{Digest, Sha256};
-use std::collections::BTreeMap;
+use std::borrow::Cow;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+/// Images whose bytes are in memory at once, to be decoded in parallel.
+const IMAGES_AT_ONCE: usize = 16;
 
 /// Reads files, each once, and gives ids for them.
 ///
@@ -99,12 +104,23 @@ impl Loader {
         if let Some(known) = self.textures.get(&key) {
             return known.clone();
         }
-        let loaded = self.read_texture(path).map(|texture| {
-            self.store.textures.push(Arc::new(texture));
-            TextureId(self.store.textures.len() as u32 - 1)
-        });
-        self.textures.insert(key, loaded.clone());
-        loaded
+        self.read_textures(&[(key.clone(), path.to_owned())]);
+        let unread = || Err(Diagnostic::error(codes::UNREADABLE, "not read").in_file(path));
+        self.textures.get(&key).cloned().unwrap_or_else(unread)
+    }
+
+    /// Reads textures that will be asked for next, in this order, and decodes them in parallel: the same ids and
+    /// diagnostics, sooner.
+    pub fn textures_ahead(&mut self, paths: impl IntoIterator<Item = PathBuf>) {
+        let mut seen = BTreeSet::new();
+        let new: Vec<(PathBuf, PathBuf)> = paths
+            .into_iter()
+            .map(|path| (canonical(&path), path))
+            .filter(|(key, _)| !self.textures.contains_key(key) && seen.insert(key.clone()))
+            .collect();
+        for batch in new.chunks(IMAGES_AT_ONCE) {
+            self.read_textures(batch);
+        }
     }
 
     /// A mesh that was read, by its id.
@@ -225,29 +241,75 @@ impl Loader {
         MeshId(self.store.meshes.len() as u32 - 1)
     }
 
-    fn read_texture(&mut self, path: &Path) -> Result<Texture, Diagnostic> {
-        let bytes = self.read(path)?;
-        self.open_image(path, &bytes)?.decode()
+    /// Reads and decodes images, of which each is kept under its key.
+    fn read_textures(&mut self, files: &[(PathBuf, PathBuf)]) {
+        let bytes: Vec<_> = files.iter().map(|(_, path)| self.read(path)).collect();
+        let opened: Vec<_> = files
+            .iter()
+            .zip(&bytes)
+            .map(|((_, path), bytes)| self.open_image(path, bytes.as_ref().map_err(Clone::clone)?))
+            .collect();
+        let kept: Vec<u64> = opened
+            .iter()
+            .map(|image| image.as_ref().map_or(0, texture::Image::kept))
+            .collect();
+        let together = opened.iter().flatten().map(texture::Image::passing);
+        let together = together.fold(0, u64::saturating_add);
+        let decode = |image: Result<texture::Image<'_>, Diagnostic>| image?.decode();
+        let decoded: Vec<_> = if self.budget.has(together) {
+            opened.into_par_iter().map(decode).collect()
+        } else {
+            opened.into_iter().map(decode).collect()
+        };
+        for (((key, _), kept), decoded) in files.iter().zip(kept).zip(decoded) {
+            let loaded = decoded.map(|texture| self.keep_texture(texture, None));
+            if loaded.is_err() {
+                self.budget.give_back(kept);
+            }
+            self.textures.insert(key.clone(), loaded);
+        }
     }
 
     fn read_mesh(&mut self, path: &Path) -> Result<Mesh, Vec<Diagnostic>> {
         let bytes = self.read(path).map_err(|e| vec![e])?;
         let text = text::decode(&bytes);
-        let source = Source { path, text: &text };
-        let in_file = |found: Vec<Diagnostic>| -> Vec<Diagnostic> {
-            found.into_iter().map(|one| one.in_file(path)).collect()
+        let decoded = match &text {
+            Cow::Borrowed(_) => 0,
+            Cow::Owned(text) => text.len(),
         };
-        let scan = scan::scan(&text, path, &mut self.budget).map_err(in_file)?;
-        let resolved = self.resolve(&source, &scan);
+        let held = (bytes.len() + decoded) as u64;
+        self.budget.hold(held);
+        let mesh = self.mesh_of(&Source { path, text: &text });
+        self.budget.let_go(held);
+        mesh
+    }
+
+    /// The mesh of a text. What was charged for its triangles is given back if there are none in the end.
+    fn mesh_of(&mut self, source: &Source<'_>) -> Result<Mesh, Vec<Diagnostic>> {
+        let before = self.budget.used();
+        let scan = scan::scan(source.text, source.path, &mut self.budget);
+        let charged = self.budget.used() - before;
+        let in_file = |found| source.in_file(found);
+        let mesh = scan
+            .map_err(in_file)
+            .and_then(|scan| self.finish_mesh(source, scan));
+        if mesh.is_err() {
+            self.budget.give_back(charged);
+        }
+        mesh
+    }
+
+    fn finish_mesh(&mut self, source: &Source<'_>, scan: Scan) -> Result<Mesh, Vec<Diagnostic>> {
+        let resolved = self.resolve(source, &scan);
         let told = std::mem::take(&mut self.told);
         self.warnings.extend(told.finish());
         let (materials, by_use) = resolved?;
         let mut warnings = Vec::new();
-        let mesh = obj::triangles(&text, scan, &by_use, &mut warnings);
-        self.warnings.extend(in_file(warnings));
-        let mesh = mesh.map_err(|e| in_file(vec![e]))?;
+        let mesh = obj::triangles(source.text, scan, &by_use, &mut warnings);
+        self.warnings.extend(source.in_file(warnings));
+        let mesh = mesh.map_err(|e| source.in_file(vec![e]))?;
         Ok(Mesh {
-            path: path.to_owned(),
+            path: source.path.to_owned(),
             materials,
             ..mesh
         })

@@ -28,6 +28,11 @@ impl Source<'_> {
     fn place(&self, diagnostic: Diagnostic, at: usize) -> Diagnostic {
         at_line(diagnostic, self.text, at).in_file(self.path)
     }
+
+    pub(super) fn in_file(&self, found: Vec<Diagnostic>) -> Vec<Diagnostic> {
+        let found = found.into_iter();
+        found.map(|one| one.in_file(self.path)).collect()
+    }
 }
 
 /// The materials of a mesh, and the index of one for each `usemtl` line.
@@ -149,6 +154,8 @@ impl Loader {
             let warning = Diagnostic::warning(codes::UNKNOWN_MATERIAL, says);
             self.tell(source, scan.uses[first].at, warning);
         }
+        let names = scan.uses.iter().zip(&used).filter(|(_, used)| **used);
+        self.material_textures_ahead(names.map(|(line, _)| line.name.as_str()), libraries);
         let mut seen = BTreeSet::new();
         let mut materials = Vec::new();
         let mut errors = Vec::new();
@@ -182,6 +189,23 @@ impl Loader {
         } else {
             Err(errors)
         }
+    }
+
+    /// Reads the images of the materials of these names, in the order in which they will be asked for.
+    fn material_textures_ahead<'a>(
+        &mut self,
+        names: impl Iterator<Item = &'a str>,
+        libraries: &Libraries,
+    ) {
+        let mut seen = BTreeSet::new();
+        let names = names.filter(|name| seen.insert(*name));
+        let found = names.filter_map(|name| libraries.find(name));
+        let paths = found.flat_map(|(library, definition)| {
+            let images = [&definition.texture, &definition.opacity_texture];
+            let images = images.into_iter().flatten();
+            images.filter_map(|(name, _)| find(&library.path, name).map(|(path, _)| path))
+        });
+        self.textures_ahead(paths);
     }
 
     fn material(
@@ -297,14 +321,12 @@ impl Loader {
 
     /// The file that a line of another file names: where its path says, or else, with a warning, beside that file.
     fn locate(&mut self, source: &Source<'_>, at: usize, name: &str) -> Option<PathBuf> {
-        let named = [name, text::without_comment(name)].map(|name| beside(source.path, name));
-        if let Some(found) = named.iter().find(|path| path.is_file()) {
-            return Some(found.clone());
+        let (found, is_beside) = find(source.path, name)?;
+        if is_beside {
+            let says = format!("\"{name}\" does not exist: taken from beside this file instead");
+            let warning = Diagnostic::warning(codes::FOUND_BESIDE, says);
+            self.tell(source, at, warning);
         }
-        let found = same_name_beside(source.path, text::without_comment(name))?;
-        let says = format!("\"{name}\" does not exist: taken from beside this file instead");
-        let warning = Diagnostic::warning(codes::FOUND_BESIDE, says);
-        self.tell(source, at, warning);
         Some(found)
     }
 
@@ -371,4 +393,14 @@ impl Loader {
             }
         }
     }
+}
+
+/// The file that another file names, and whether it was only found beside that.
+fn find(file: &Path, name: &str) -> Option<(PathBuf, bool)> {
+    let named = [name, text::without_comment(name)].map(|name| beside(file, name));
+    if let Some(found) = named.into_iter().find(|path| path.is_file()) {
+        return Some((found, false));
+    }
+    let found = same_name_beside(file, text::without_comment(name))?;
+    Some((found, true))
 }

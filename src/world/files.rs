@@ -75,6 +75,12 @@ impl<'a> Files<'a> {
         self.keep(loaded, path, named)
     }
 
+    /// Reads images that will be asked for next, in this order.
+    pub(super) fn textures_ahead<'n>(&mut self, named: impl Iterator<Item = &'n Placed<String>>) {
+        let paths: Vec<PathBuf> = named.map(|named| self.path(named)).collect();
+        self.loader.textures_ahead(paths);
+    }
+
     pub(super) fn texture(&mut self, named: &Placed<String>) -> Option<TextureId> {
         let path = self.path(named);
         let loaded = self.loader.texture(&path).map_err(|e| vec![e]);

@@ -32,6 +32,7 @@ pub struct Spawned {
 /// materials on meshes without texture coordinates; entities out of reach. The warnings follow the errors.
 pub fn spawn(desc: &SceneDesc, loader: Loader) -> Result<Spawned, Vec<Diagnostic>> {
     let mut files = Files::new(desc, loader);
+    files.textures_ahead(images(desc));
     let materials: Vec<Option<Material>> = desc
         .materials
         .iter()
@@ -119,6 +120,7 @@ pub fn spawn(desc: &SceneDesc, loader: Loader) -> Result<Spawned, Vec<Diagnostic
 #[must_use]
 pub fn open_files(desc: &SceneDesc, loader: Loader) -> Vec<Diagnostic> {
     let mut files = Files::new(desc, loader);
+    files.textures_ahead(images(desc));
     for named in &desc.materials {
         material(&named.material, &mut files);
     }
@@ -333,14 +335,27 @@ fn material(desc: &MaterialDesc, files: &mut Files) -> Option<Material> {
     Some(Material { scattering, color })
 }
 
-fn is_textured(material: &MaterialDesc) -> bool {
+/// The images that the materials of a scene name, in their order.
+fn images(desc: &SceneDesc) -> impl Iterator<Item = &Placed<String>> {
+    desc.materials.iter().filter_map(|m| image(&m.material))
+}
+
+/// The image that gives a material its colour.
+fn image(material: &MaterialDesc) -> Option<&Placed<String>> {
     use MaterialDesc::{Diffuse, Glass, Metal, Mirror, Plastic};
     let (Diffuse { color }
     | Mirror { color }
     | Glass { color, .. }
     | Plastic { color, .. }
     | Metal { color, .. }) = material;
-    matches!(color, ColorDesc::Image { .. })
+    match color {
+        ColorDesc::Image { path, .. } => Some(path),
+        ColorDesc::Linear(_) | ColorDesc::Hdr(_) => None,
+    }
+}
+
+fn is_textured(material: &MaterialDesc) -> bool {
+    image(material).is_some()
 }
 
 /// What there is to say about a textured mesh whose file has no texture coordinates: an error where the scene's own

@@ -98,3 +98,44 @@ fn crc32(bytes: &[u8]) -> u32 {
         })
     })
 }
+
+#[test]
+fn images_read_ahead_are_those_read_one_by_one() {
+    use png::{BitDepth::Eight, ColorType::Rgb};
+    let mut files: Vec<(String, Vec<u8>)> = (0..20)
+        .map(|i| (format!("{i}.png"), png(Rgb, Eight, 1, &[i, 2, 3])))
+        .collect();
+    // One that is damaged, among the others; one that is missing; one that is named twice.
+    let whole = files[5].1.len();
+    files[5].1.truncate(whole - 24);
+    let refer: Vec<(&str, &[u8])> = files.iter().map(|(n, b)| (n.as_str(), &b[..])).collect();
+    let folder = Folder::of(&refer);
+    let names = files.iter().map(|(name, _)| name.as_str());
+    let paths: Vec<PathBuf> = ["3.png"]
+        .into_iter()
+        .chain(names)
+        .chain(["missing.png"])
+        .map(|name| folder.0.join(name))
+        .collect();
+    let read = |ahead: bool| {
+        let mut loader = Loader::new();
+        if ahead {
+            loader.textures_ahead(paths.clone());
+        }
+        let ids: Vec<_> = paths.iter().map(|path| loader.texture(path)).collect();
+        let store = loader.finish();
+        let firsts: Vec<u8> = store.textures.iter().map(|t| t.texels[0]).collect();
+        (ids, firsts, store.hash(), store.memory())
+    };
+    let (ids, firsts, hash, memory) = read(false);
+    assert_eq!(
+        (ids[1].clone(), ids[0].clone()),
+        (Ok(TextureId(1)), Ok(TextureId(0)))
+    );
+    let refused = ids.iter().filter_map(|id| id.as_ref().err());
+    let refused: Vec<_> = refused.map(|error| error.code).collect();
+    assert_eq!(refused, [codes::IMAGE_CORRUPT, codes::UNREADABLE]);
+    // The damaged one takes nothing.
+    assert_eq!((firsts.len(), memory), (19, 19 * 3));
+    assert_eq!(read(true), (ids, firsts, hash, memory));
+}

@@ -75,3 +75,34 @@ fn files_take_no_more_memory_than_they_may() {
     assert_eq!(load(large.len() as u64).0, ["", "E111"]);
     assert_eq!(load(10), (["E111", "E111"], "E111", 0));
 }
+
+#[test]
+fn a_file_that_failed_takes_nothing() {
+    let good = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    let folder = Folder::of(&[
+        ("index.obj", format!("{good}f 1 2 9\n").as_bytes()),
+        ("flat.obj", b"v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"),
+        ("good.obj", good.as_bytes()),
+    ]);
+    let mut loader = Loader::new();
+    for bad in ["index.obj", "flat.obj"] {
+        assert!(loader.mesh(&folder.0.join(bad)).is_err());
+    }
+    assert!(loader.mesh(&folder.0.join("good.obj")).is_ok());
+    assert_eq!(loader.finish().memory(), 3 * 24 + 3 * 3 * 4 + 8);
+}
+
+#[test]
+fn a_file_counts_while_it_is_read() {
+    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    let folder = Folder::of(&[("a.obj", text.as_bytes())]);
+    let fits = |memory: usize| {
+        let limits = Limits {
+            memory: memory as u64,
+        };
+        let mut loader = Loader::with_limits(limits);
+        loader.mesh(&folder.0.join("a.obj")).is_ok()
+    };
+    let both = text.len() + 3 * 24 + 3 * 3 * 4 + 8;
+    assert_eq!((fits(both), fits(both - 1)), (true, false));
+}
