@@ -32,17 +32,52 @@ fn main() -> Result<(), Box<dyn Error>> {
     told
 }
 
+/// A file of the planet.
+enum Kind {
+    Obj { quads: bool, attributes: bool },
+    Glb,
+}
+
 fn table(folder: &Path) -> Result<(), Box<dyn Error>> {
     println!(
         "| file | MB | triangles | processor s | wall s | Mtriangles/s | peak MB |\n|---|---:|---:|---:|---:|---:|---:|"
     );
-    for (name, quads, attributes) in [
-        ("triangles, uvs, normals", false, true),
-        ("quads, uvs, normals", true, true),
-        ("triangles, positions only", false, false),
+    for (name, kind) in [
+        (
+            "OBJ: triangles, uvs, normals",
+            Kind::Obj {
+                quads: false,
+                attributes: true,
+            },
+        ),
+        (
+            "OBJ: quads, uvs, normals",
+            Kind::Obj {
+                quads: true,
+                attributes: true,
+            },
+        ),
+        (
+            "OBJ: triangles, positions only",
+            Kind::Obj {
+                quads: false,
+                attributes: false,
+            },
+        ),
+        ("glb: triangles, uvs, normals", Kind::Glb),
     ] {
-        let path = folder.join("mesh.obj");
-        fs::write(&path, planet(GRID, quads, attributes))?;
+        let path = match kind {
+            Kind::Obj { quads, attributes } => {
+                let path = folder.join("mesh.obj");
+                fs::write(&path, planet(GRID, quads, attributes))?;
+                path
+            }
+            Kind::Glb => {
+                let path = folder.join("mesh.glb");
+                fs::write(&path, planet_glb(GRID))?;
+                path
+            }
+        };
         let mut best: Option<[f64; 4]> = None;
         for _ in 0..RUNS {
             let run = child(&path)?;
@@ -77,11 +112,15 @@ fn child(path: &Path) -> Result<[f64; 4], Box<dyn Error>> {
 
 /// Loads a mesh as a scene does and prints what it took.
 fn load(path: &Path) -> Result<(), Box<dyn Error>> {
+    let name = path.file_name().unwrap_or_default();
+    let entity = if path.extension().is_some_and(|suffix| suffix == "glb") {
+        format!("gltf: {name:?}")
+    } else {
+        format!("shape: Mesh({name:?})")
+    };
     let text = format!(
         "Scene(version: 1, camera: (at: (0, 0, 5), look_at: (0, 0, 0)), background: Linear(1, 1, 1),
-         materials: {{ \"plain\": Diffuse() }},
-         entities: [(shape: Mesh({:?}), material: \"plain\")])",
-        path.file_name().unwrap_or_default()
+         materials: {{ \"plain\": Diffuse() }}, entities: [({entity}, material: \"plain\")])"
     );
     let (cpu, start) = (processor_seconds(), Instant::now());
     let scene = luxel::scene::parse(&text, &path.with_file_name("load.ron"));
@@ -112,21 +151,7 @@ fn planet((columns, rows): (usize, usize), quads: bool, attributes: bool) -> Str
     let mut line = |args: std::fmt::Arguments<'_>| {
         let _ = text.write_fmt(args);
     };
-    let place = |column: usize, row: usize| {
-        let (u, v) = (column as f64 / columns as f64, row as f64 / rows as f64);
-        let (longitude, latitude) = (std::f64::consts::TAU * u, std::f64::consts::PI * (v - 0.5));
-        let up = [
-            latitude.cos() * longitude.cos(),
-            latitude.sin(),
-            latitude.cos() * longitude.sin(),
-        ];
-        (
-            u,
-            v,
-            up,
-            1.0 + 0.05 * (9.0 * longitude).sin() * (7.0 * latitude).cos(),
-        )
-    };
+    let place = |column, row| place((columns, rows), column, row);
     for row in 0..=rows {
         for column in 0..=columns {
             let (_, _, up, radius) = place(column, row);
@@ -160,6 +185,85 @@ fn planet((columns, rows): (usize, usize), quads: bool, attributes: bool) -> Str
         }
     }
     text
+}
+
+/// Texture coordinates, direction and radius at a crossing of the grid.
+fn place((columns, rows): (usize, usize), column: usize, row: usize) -> (f64, f64, [f64; 3], f64) {
+    let (u, v) = (column as f64 / columns as f64, row as f64 / rows as f64);
+    let (longitude, latitude) = (std::f64::consts::TAU * u, std::f64::consts::PI * (v - 0.5));
+    let up = [
+        latitude.cos() * longitude.cos(),
+        latitude.sin(),
+        latitude.cos() * longitude.sin(),
+    ];
+    let radius = 1.0 + 0.05 * (9.0 * longitude).sin() * (7.0 * latitude).cos();
+    (u, v, up, radius)
+}
+
+/// The same as triangles of a glb file: f32, with indices of four bytes.
+fn planet_glb((columns, rows): (usize, usize)) -> Vec<u8> {
+    let crossings = || (0..=rows).flat_map(|row| (0..=columns).map(move |column| (column, row)));
+    let count = (columns + 1) * (rows + 1);
+    let mut bounds = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
+    for (column, row) in crossings() {
+        let (_, _, up, radius) = place((columns, rows), column, row);
+        let point = up.map(|c| (c * radius) as f32);
+        bounds[0] = [0, 1, 2].map(|axis| bounds[0][axis].min(point[axis]));
+        bounds[1] = [0, 1, 2].map(|axis| bounds[1][axis].max(point[axis]));
+    }
+    let [min, max] = bounds;
+    let mut binary = Vec::new();
+    let mut write = |number: f64| binary.extend((number as f32).to_le_bytes());
+    for (column, row) in crossings() {
+        let (_, _, up, radius) = place((columns, rows), column, row);
+        up.into_iter().for_each(|c| write(c * radius));
+    }
+    for (column, row) in crossings() {
+        let (_, _, up, _) = place((columns, rows), column, row);
+        up.into_iter().for_each(&mut write);
+    }
+    for (column, row) in crossings() {
+        let (u, v, ..) = place((columns, rows), column, row);
+        [u, 1.0 - v].into_iter().for_each(&mut write);
+    }
+    for (column, row) in (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row))) {
+        let [a, b, c, d] = [(0, 0), (1, 0), (1, 1), (0, 1)]
+            .map(|(right, up)| ((row + up) * (columns + 1) + column + right) as u32);
+        binary.extend([a, c, b, a, d, c].map(u32::to_le_bytes).as_flattened());
+    }
+    let indices = 6 * columns * rows;
+    let views = [12 * count, 12 * count, 8 * count, 4 * indices];
+    let mut offset = 0;
+    let views = views.map(|length| {
+        let view = format!("{{\"buffer\":0,\"byteOffset\":{offset},\"byteLength\":{length}}}");
+        offset += length;
+        view
+    });
+    let mut json = format!(
+        r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],
+"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2}},"indices":3}}]}}],
+"accessors":[{{"bufferView":0,"componentType":5126,"count":{count},"type":"VEC3","min":{min:?},"max":{max:?}}},
+{{"bufferView":1,"componentType":5126,"count":{count},"type":"VEC3"}},
+{{"bufferView":2,"componentType":5126,"count":{count},"type":"VEC2"}},
+{{"bufferView":3,"componentType":5125,"count":{indices},"type":"SCALAR"}}],
+"bufferViews":[{}],"buffers":[{{"byteLength":{offset}}}]}}"#,
+        views.join(",")
+    );
+    while json.len() % 4 != 0 {
+        json.push(' ');
+    }
+    let chunk = |kind: &[u8; 4], content: &[u8]| {
+        [&(content.len() as u32).to_le_bytes()[..], kind, content].concat()
+    };
+    let chunks = [chunk(b"JSON", json.as_bytes()), chunk(b"BIN\0", &binary)].concat();
+    let length = 12 + chunks.len() as u32;
+    [
+        &b"glTF"[..],
+        &2u32.to_le_bytes(),
+        &length.to_le_bytes(),
+        &chunks,
+    ]
+    .concat()
 }
 
 /// User and system time of this process so far; 0 where there is no `/proc`.
