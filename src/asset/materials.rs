@@ -296,6 +296,7 @@ impl Loader {
         Ok(Opacity {
             factor,
             texture,
+            vertex_alpha: false,
             mode,
         })
     }

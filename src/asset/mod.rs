@@ -74,9 +74,10 @@ pub struct Mesh {
     pub uvs: PerCorner<DVec2>,
     /// The second set of texture coordinates, like `uvs`. Empty unless a material of the mesh reads it.
     pub uvs1: PerCorner<DVec2>,
-    /// Linear colour of each corner, which multiplies the colour of materials with
-    /// [`MeshMaterial::vertex_colors`]. Empty when the file has none, else length `3 * triangles`.
-    pub colors: Vec<[f32; 3]>,
+    /// Linear colour and alpha of each corner. The colour multiplies that of materials with
+    /// [`MeshMaterial::vertex_colors`], the alpha the opacity of those with [`Opacity::vertex_alpha`]. Empty when the
+    /// file has none, else length `3 * triangles`.
+    pub colors: Vec<[f32; 4]>,
     /// Normals of each corner as in the file, unit length; `None` where the file gives none. Empty when the file has
     /// none at all, else length `3 * triangles`.
     pub normals: PerCorner<DVec3>,
@@ -107,12 +108,14 @@ pub struct MeshMaterial {
     pub color: [f64; 3],
     /// Colour texture (`map_Kd`, `baseColorTexture`).
     pub texture: Option<TextureUse>,
-    /// Whether [`Mesh::colors`] multiply the colour.
+    /// Whether [`Mesh::colors`] multiply the colour; where nothing is scattered, the emission.
     pub vertex_colors: bool,
     /// Linear emitted radiance (`Ke`, `emissiveFactor` times its strength), as a factor of `emission_texture`.
     pub emission: [f64; 3],
     /// Texture of the emission (`map_Ke`, `emissiveTexture`).
     pub emission_texture: Option<TextureUse>,
+    /// Whether it shines from both sides (`doubleSided`), not from that alone which the geometric normal points to.
+    pub two_sided: bool,
     /// How much of the surface is there.
     pub opacity: Opacity,
 }
@@ -129,6 +132,7 @@ impl MeshMaterial {
             vertex_colors: false,
             emission: [0.0; 3],
             emission_texture: None,
+            two_sided: false,
             opacity: Opacity::OPAQUE,
         }
     }
@@ -157,13 +161,15 @@ pub enum Scattering {
     Metal,
 }
 
-/// How much of a surface is there: `factor` times the alpha of `texture`, read by `mode`.
+/// How much of a surface is there: `factor` times the alpha of `texture` and of the corners, read by `mode`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Opacity {
     /// 0 to 1.
     pub factor: f64,
     /// Whose alpha multiplies the factor; a texture without alpha counts as 1.
     pub texture: Option<TextureUse>,
+    /// Whether the alpha of [`Mesh::colors`] multiplies it too.
+    pub vertex_alpha: bool,
     /// What the product means.
     pub mode: AlphaMode,
 }
@@ -173,6 +179,7 @@ impl Opacity {
     pub const OPAQUE: Opacity = Opacity {
         factor: 1.0,
         texture: None,
+        vertex_alpha: false,
         mode: AlphaMode::Opaque,
     };
 }

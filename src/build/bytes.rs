@@ -73,6 +73,7 @@ pub fn buffer_bytes(scene: &FlatScene) -> Vec<BufferBytes> {
             len: triangles.v0.len(),
             bytes: triangles.v0.len() * LIGHT_TRIANGLE,
         },
+        buffer("light triangle sides", &triangles.two_sided),
         buffer("light triangle places", &triangles.place),
         buffer("punctual lights", &scene.lights.punctual),
         buffer("light weights", &scene.lights.cumulative),

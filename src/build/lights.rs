@@ -33,7 +33,7 @@ impl Collector {
         }
     }
 
-    /// Adds a triangle in scene units, counter-clockwise seen from its emitting side, if its material emits.
+    /// Adds a triangle in scene units, counter-clockwise seen from its (or one) emitting side, if its material emits.
     pub(crate) fn triangle(
         &mut self,
         v: [Vec3; 3],
@@ -41,11 +41,12 @@ impl Collector {
         material: MaterialId,
         materials: &[Material],
     ) {
-        let radiance = emission(materials, material);
+        let material = &materials[material.0 as usize];
+        let sides = if material.two_sided { 2.0 } else { 1.0 };
         let [a, b, c] = v.map(Vec3::as_dvec3);
         let area = 0.5 * (b - a).cross(c - a).length();
         // A triangle whose area is 0 in f32 has no density to sample it by.
-        if area as f32 == 0.0 || !self.weigh(area, radiance) {
+        if area as f32 == 0.0 || !self.weigh(sides * area, material.emission) {
             return;
         }
         let triangles = &mut self.lights.triangles;
@@ -53,9 +54,9 @@ impl Collector {
         triangles.e1.push((b - a).as_vec3().to_array());
         triangles.e2.push((c - a).as_vec3().to_array());
         triangles.area.push(area as f32);
-        triangles.radiance.push(radiance);
+        triangles.radiance.push(material.emission);
+        triangles.two_sided.push(material.two_sided);
         triangles.place.push(place);
-        let material = &materials[material.0 as usize];
         self.varies |= material.emission_source.is_some() || material.opacity != Opacity::Full;
     }
 
@@ -119,6 +120,10 @@ impl Collector {
     pub(crate) fn finish(mut self) -> Lights {
         if !self.varies {
             self.lights.triangles.place = Vec::new();
+        }
+        let two_sided = &mut self.lights.triangles.two_sided;
+        if !two_sided.contains(&true) {
+            *two_sided = Vec::new();
         }
         self.lights
     }

@@ -88,6 +88,7 @@ impl<'a> Tables<'a> {
             vertex_colors: file.is_some_and(|file| file.vertex_colors),
             emission,
             emission_source,
+            two_sided: look.emission.is_none() && file.is_some_and(|file| file.two_sided),
             opacity,
         })
     }
@@ -166,6 +167,7 @@ impl<'a> Tables<'a> {
             .filter(|of| self.store.texture(of.texture).alpha.is_some());
         let factor = opacity.factor as f32;
         let full = texture.is_none()
+            && !opacity.vertex_alpha
             && match opacity.mode {
                 AlphaMode::Opaque => true,
                 AlphaMode::Mask { cutoff } => factor >= cutoff as f32,
@@ -177,6 +179,7 @@ impl<'a> Tables<'a> {
         let coverage = Coverage {
             factor,
             texture: texture.map(|of| self.texture(of)),
+            vertex_alpha: opacity.vertex_alpha,
         };
         match opacity.mode {
             AlphaMode::Mask { cutoff } => Opacity::Mask {
@@ -269,18 +272,25 @@ fn key(material: &flat::Material) -> Key {
     };
     let of_coverage = |coverage: &Coverage| {
         let texture = coverage.texture.map_or(0, |t| t + 1);
-        (texture, coverage.factor)
+        (texture, coverage.factor, coverage.vertex_alpha)
     };
     let (texture, [r, g, b]) = of_source(&material.color);
     let [er, eg, eb] = material.emission;
     let source = material.emission_source.as_ref().map(of_source);
     let (emission_texture, [sr, sg, sb]) = source.unwrap_or_default();
-    let (mode, (alpha, factor), cutoff) = match &material.opacity {
-        Opacity::Full => (0, (0, 0.0), 0.0),
+    let (mode, (alpha, factor, vertex_alpha), cutoff) = match &material.opacity {
+        Opacity::Full => (0, (0, 0.0, false), 0.0),
         Opacity::Mask { coverage, cutoff } => (1, of_coverage(coverage), *cutoff),
         Opacity::Blend(coverage) => (2, of_coverage(coverage), 0.0),
     };
-    let flags = u32::from(material.vertex_colors) | u32::from(source.is_some()) << 1 | mode << 2;
+    let flags = [
+        material.vertex_colors,
+        source.is_some(),
+        material.two_sided,
+        vertex_alpha,
+    ];
+    let flags = flags.map(u32::from);
+    let flags = flags.into_iter().fold(mode, |all, flag| all << 1 | flag);
     let mut key = [0; 18];
     key[0] = material.scatter as u32;
     key[1..5].copy_from_slice(&[flags, texture, emission_texture, alpha]);

@@ -114,7 +114,7 @@ impl Soup {
                 self.shading.uvs1.extend(uvs);
             }
             if keep.colors {
-                let colors = corners.map(|c| mesh.colors.get(c).copied().unwrap_or([1.0; 3]));
+                let colors = corners.map(|c| mesh.colors.get(c).copied().unwrap_or([1.0; 4]));
                 self.shading.colors.extend(colors);
             }
             let prim = prim as u32;

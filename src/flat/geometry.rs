@@ -26,8 +26,8 @@ pub struct Shading {
     pub uvs: Vec<[f32; 2]>,
     /// The second set of corner texture coordinates. Empty unless a texture reads it.
     pub uvs1: Vec<[f32; 2]>,
-    /// Linear corner colours, 1 where the file has none. Empty unless a material reads them.
-    pub colors: Vec<[f32; 3]>,
+    /// Linear corner colours with alpha, 1 where the file has none. Empty unless a material reads them.
+    pub colors: Vec<[f32; 4]>,
     /// World geometry: the material. Local geometry: the material *slot*, see [`super::FlatScene::instance_materials`].
     pub material: Vec<u32>,
     /// World geometry: the object of each primitive. Local geometry: empty, its instance knows.

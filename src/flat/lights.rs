@@ -1,7 +1,7 @@
 //! The light table: emissive spheres and triangles, and lights without extent, for next-event estimation.
 //!
 //! A light is chosen with probability `weight / total`, `weight` = power / π, power being the mean of its RGB. For a
-//! surface that is area × radiance; then a point on it: a triangle's uniformly by area, a sphere's uniformly in the solid
+//! surface that is area × radiance, twice where both sides shine; then a point on it: a triangle's uniformly by area, a sphere's uniformly in the solid
 //! angle that it subtends.
 
 /// Emissive triangles in scene space, whatever they are stored in.
@@ -17,6 +17,8 @@ pub struct LightTriangles {
     pub area: Vec<f32>,
     /// Radiance; its mean where it varies.
     pub radiance: Vec<[f32; 3]>,
+    /// Whether each shines from both sides: half of its samples are for either. Empty unless any does.
+    pub two_sided: Vec<bool>,
     /// Where to look up what varies over each triangle. Empty unless a material's emission or opacity does.
     pub place: Vec<LightPlace>,
 }

@@ -36,13 +36,15 @@ pub enum ColorSource {
     },
 }
 
-/// How much of a surface is there: `factor` times the alpha of `texture`.
+/// How much of a surface is there: `factor` times the alpha of `texture` and of the corners.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coverage {
     /// 0 to 1.
     pub factor: f32,
     /// Index into [`super::FlatScene::textures`].
     pub texture: Option<u32>,
+    /// Whether the alpha of [`super::Shading::colors`] multiplies it.
+    pub vertex_alpha: bool,
 }
 
 /// What rays meet of a surface.
@@ -74,11 +76,13 @@ pub struct Material {
     pub internal_reflectance: f32,
     /// Whether [`super::Shading::colors`] multiply the colour; where nothing is scattered, the emission.
     pub vertex_colors: bool,
-    /// Radiance emitted on the side that the geometric normal points to: what lights are weighed by. Where
-    /// `emission_source` says otherwise from place to place, the mean over its whole image, above 0 if any texel is.
+    /// Radiance emitted on the side that the geometric normal points to, or on both: what lights are weighed by. Where
+    /// it is not the same everywhere, the mean of `emission_source` over its whole image, above 0 if any texel is.
     pub emission: [f32; 3],
     /// The radiance itself, where it is not the same everywhere.
     pub emission_source: Option<ColorSource>,
+    /// Whether both sides emit; never a sphere's.
+    pub two_sided: bool,
     /// What rays meet.
     pub opacity: Opacity,
 }

@@ -103,9 +103,15 @@ pub(super) fn texture_color(scene: &FlatScene, texture: u32, place: &Place) -> V
     eval_texture(texture, place.coordinates(scene, texture))
 }
 
+/// Corner colours with their alpha at a place; 1 where there are none.
+fn corner_color(scene: &FlatScene, place: &Place) -> [f32; 4] {
+    place.corners(&shading(scene, place.instance).colors, 1.0)
+}
+
 /// Corner colours at a place; 1 where there are none.
 pub(super) fn vertex_color(scene: &FlatScene, place: &Place) -> Vec3 {
-    Vec3::from(place.corners(&shading(scene, place.instance).colors, 1.0))
+    let [r, g, b, _] = corner_color(scene, place);
+    Vec3::new(r, g, b)
 }
 
 /// Radiance at a place of a material that emits.
@@ -139,12 +145,16 @@ fn emitted_from(
 
 /// Share of rays that meet the surface at a place; 0 or 1 under a mask.
 fn presence(scene: &FlatScene, material: &Material, place: &Place) -> f32 {
-    let covered = |coverage: &Coverage| match coverage.texture {
-        None => coverage.factor,
-        Some(texture) => {
+    let covered = |coverage: &Coverage| {
+        let mut covered = coverage.factor;
+        if let Some(texture) = coverage.texture {
             let texture = &scene.textures[texture as usize];
-            coverage.factor * eval_alpha(texture, place.coordinates(scene, texture))
+            covered *= eval_alpha(texture, place.coordinates(scene, texture));
         }
+        if coverage.vertex_alpha {
+            covered *= corner_color(scene, place)[3];
+        }
+        covered
     };
     match &material.opacity {
         Opacity::Full => 1.0,

@@ -61,8 +61,14 @@ pub(super) fn sample_light(
     (sample.radiance != Vec3::ZERO).then_some(sample)
 }
 
+/// A normal of a surface that shines from both sides, on the side that a direction points to.
+pub(super) fn towards(ng: Vec3, dir: Vec3) -> Vec3 {
+    if ng.dot(dir) < 0.0 { -ng } else { ng }
+}
+
 /// Density, over solid angle from a point, of sampling the emitter that a ray in direction `dir` hit at distance `t`
-/// with geometric normal `ng`; 0 where it could not have been sampled.
+/// with geometric normal `ng`; 0 where it could not have been sampled. `radiance` is what the table weighs per area: of
+/// both sides together where both shine.
 pub(super) fn light_pdf(
     scene: &FlatScene,
     from: Vec3,
@@ -215,14 +221,18 @@ fn sample_triangle(
     );
     let [b1, b2] = triangle_weights(u);
     let ng = unit(e1.cross(e2));
+    let radiance = Vec3::from(lights.radiance[i]);
+    let (ng, weight) = match lights.two_sided.get(i) {
+        Some(true) => (towards(ng, from - v0), radiance * 2.0),
+        _ => (ng, radiance),
+    };
     let point = v0 + e1 * b1 + e2 * b2;
     let size = v0.abs() + (e1 * b1).abs() + (e2 * b2).abs();
     let point = point + ng * (GAMMA_7 * size.dot(ng.abs()));
     let to = point - from;
     let distance = to.length();
     let dir = to * (1.0 / distance);
-    let radiance = Vec3::from(lights.radiance[i]);
-    let pdf = triangle_pdf(distance, -dir.dot(ng), radiance, total);
+    let pdf = triangle_pdf(distance, -dir.dot(ng), weight, total);
     (pdf > 0.0 && pdf.is_finite()).then_some(LightSample {
         dir,
         t_max: distance * SHORT,
@@ -304,6 +314,7 @@ mod tests {
             e2: vec![(c - a).to_array()],
             area: vec![(c - a).cross(b - a).length() / 2.0],
             radiance: vec![[2.0; 3]],
+            two_sided: Vec::new(),
             place: Vec::new(),
         };
         let total = f64::from(lights.area[0]) * 2.0;

@@ -2,7 +2,7 @@
 
 use super::attributes::{Place, emitted};
 use super::camera::{ImageSample, generate, image_direction};
-use super::light::light_pdf;
+use super::light::{light_pdf, towards};
 use super::opacity::{pass_paths, pass_shadows, random};
 use super::sampler::{Pair, pixel_key, sample_pair};
 use super::scatter::{Bounce, mis_weight, sample_bsdf, sample_lights};
@@ -198,9 +198,12 @@ fn emission(wave: &mut Wave, bounce: Bounce) {
             continue;
         }
         let material = &scene.materials[wave.surfaces.material[i] as usize];
-        let mean = Vec3::from(material.emission);
+        let mut mean = Vec3::from(material.emission);
         let dir = get(&wave.paths.rays.dir, i);
-        let ng = get(&wave.surfaces.ng, i);
+        let mut ng = get(&wave.surfaces.ng, i);
+        if material.two_sided {
+            (mean, ng) = (mean * 2.0, towards(ng, -dir));
+        }
         if mean.max_element() <= 0.0 || dir.dot(ng) >= 0.0 {
             continue;
         }

@@ -101,9 +101,14 @@ fn agree(name: &str, stage: &Stage, luxel: u32, reference: u32, max_bounces: u32
 }
 
 fn lamp(name: &str, place: &str) -> Stage {
+    sided_lamp(name, place, false)
+}
+
+fn sided_lamp(name: &str, place: &str, two_sided: bool) -> Stage {
     under(name, place, "").retouch(
-        |assets| {
+        move |assets| {
             let material = MeshMaterial {
+                two_sided,
                 emission: [5.0, 7.0, 9.0],
                 emission_texture: Some(TextureUse::plain(TextureId(0))),
                 ..MeshMaterial::diffuse("lamp", [0.3; 3])
@@ -114,8 +119,9 @@ fn lamp(name: &str, place: &str) -> Stage {
                 material,
             );
         },
-        |scene| {
+        move |scene| {
             for surface in of_entity(scene, 0) {
+                surface.two_sided = two_sided;
                 surface.emission = Color::Image(reference::Image {
                     factor: DVec3::new(5.0, 7.0, 9.0),
                     ..image()
@@ -154,6 +160,41 @@ fn estimators_agree_on_a_textured_lamp() {
             ..options(1)
         };
         stage.luxel(0, if nee { 1024 } else { 8192 }, &options)
+    };
+    let truth = picture(true, true);
+    assert_agree("light samples alone", &picture(true, false), &truth, 0.02);
+    assert_agree("chance alone", &picture(false, false), &truth, 0.03);
+}
+
+/// Between the floor's halves: either side of it lights one of them.
+const UPRIGHT: &str = "translate: (-0.3, 0.7, 0.1), rotate: Euler(15, 75, 0), scale: 0.7";
+const UPRIGHT_MIRRORED: &str =
+    "translate: (-0.3, 0.7, 0.1), rotate: Euler(15, 75, 0), scale: (-0.7, 0.7, 0.7)";
+
+#[test]
+fn a_lamp_that_shines_from_both_sides() {
+    for (name, place) in [("two_sided", UPRIGHT), ("two_mirrored", UPRIGHT_MIRRORED)] {
+        let stage = sided_lamp(name, place, true);
+        agree(name, &stage, 2048, 2880, 2, true);
+        let flat = stage.flat(0, &options(1));
+        assert_eq!(flat.lights.triangles.two_sided, [true; 2]);
+        let one = sided_lamp(name, place, false).flat(0, &options(1));
+        assert!(one.lights.triangles.two_sided.is_empty());
+        assert_eq!(flat.lights.total(), 2.0 * one.lights.total());
+    }
+}
+
+/// The light's density is the one that its samples have: alone or weighed, they give what chance gives.
+#[test]
+fn estimators_agree_on_both_sides() {
+    let stage = sided_lamp("two_sided_estimators", UPRIGHT, true);
+    let picture = |nee, mis| {
+        let options = TraceOptions {
+            nee,
+            mis,
+            ..options(1)
+        };
+        stage.luxel(0, if nee { 2048 } else { 16384 }, &options)
     };
     let truth = picture(true, true);
     assert_agree("light samples alone", &picture(true, false), &truth, 0.02);
@@ -247,7 +288,7 @@ fn a_second_set_of_coordinates_is_mapped_and_wrapped() {
                     };
                     *more = Some(Box::new(Corners {
                         uv1: [0, 1, 2].map(|k| second(3 * t + k)),
-                        tint: [DVec3::ONE; 3],
+                        ..Corners::PLAIN
                     }));
                     repaint(surface, |m| {
                         m.color = Color::Image(reference::Image {
@@ -292,7 +333,12 @@ fn tinted(name: &str, place: &str, unlit: bool) -> Stage {
                 ..MeshMaterial::diffuse("tinted", [0.8, 0.9, 1.0])
             };
             give(assets, None, material);
-            Arc::make_mut(&mut assets.meshes[0]).colors = (0..6).map(tint).collect();
+            Arc::make_mut(&mut assets.meshes[0]).colors = (0..6)
+                .map(|k| {
+                    let [r, g, b] = tint(k);
+                    [r, g, b, 1.0]
+                })
+                .collect();
         },
         move |scene| {
             for (t, surface) in of_entity(scene, 0).enumerate() {
@@ -300,8 +346,8 @@ fn tinted(name: &str, place: &str, unlit: bool) -> Stage {
                     continue;
                 };
                 *more = Some(Box::new(Corners {
-                    uv1: [DVec2::ZERO; 3],
                     tint: [0, 1, 2].map(|k| DVec3::from(tint(3 * t + k).map(f64::from))),
+                    ..Corners::PLAIN
                 }));
                 surface.tinted_emission = unlit;
                 surface.emission = Color::Flat(DVec3::splat(f64::from(u8::from(unlit)) * 2.0));

@@ -43,6 +43,7 @@ fn surface(shape: Shape, kind: Kind, color: f64, emission: f64) -> Surface {
         }),
         emission: Color::Flat(DVec3::splat(emission)),
         tinted_emission: false,
+        two_sided: false,
         entity: 0,
     }
 }

@@ -3,12 +3,15 @@
 use crate::files::{ABOVE, give, of_entity, repaint, texture, under};
 use crate::luxel_side::{Stage, options, trace};
 use crate::objs;
-use crate::reference::{Color, Estimator, Image, Veil};
+use crate::reference::{Color, Corners, Estimator, Image, Kind, Shape, Veil};
 use crate::stats::{Mean, assert_agree, assert_mean};
 use glam::DVec3;
-use luxel::asset::{AlphaMode, AssetStore, Filter, MeshMaterial, Opacity, TextureId, TextureUse};
+use luxel::asset::{
+    AlphaMode, AssetStore, Filter, MeshMaterial, Opacity, Scattering, TextureId, TextureUse,
+};
 use luxel::build::Accel;
 use luxel::trace::{Isa, Rect, Sampler, TileSums, TraceOptions, Tracer};
+use std::sync::Arc;
 
 const MASK: AlphaMode = AlphaMode::Mask { cutoff: 0.5 };
 
@@ -31,6 +34,7 @@ fn veil(
             opacity: Opacity {
                 factor,
                 texture: textured.then_some(of),
+                vertex_alpha: false,
                 mode,
             },
             ..MeshMaterial::diffuse("veil", [1.0; 3])
@@ -142,7 +146,7 @@ fn identities_take_half_a_blend() {
 fn half_a_veil_halves_the_light() {
     let black = |assets: &mut AssetStore| {
         veil(0.5, AlphaMode::Blend, false, Filter::Nearest)(assets);
-        std::sync::Arc::make_mut(&mut assets.meshes[0]).materials[0].color = [0.0; 3];
+        Arc::make_mut(&mut assets.meshes[0]).materials[0].color = [0.0; 3];
     };
     let before = facing(
         "veil_before",
@@ -216,7 +220,7 @@ fn agree(
         .retouch(
             move |assets| {
                 veil(0.9, mode, true, Filter::Bilinear)(assets);
-                let material = &mut std::sync::Arc::make_mut(&mut assets.meshes[0]).materials[0];
+                let material = &mut Arc::make_mut(&mut assets.meshes[0]).materials[0];
                 material.color = [0.8, 0.6, 0.7];
                 material.emission = [emission; 3];
             },
@@ -226,6 +230,7 @@ fn agree(
                     ..Image::from_srgb(&[0; 6], 2, 1)
                 };
                 let veil = Veil {
+                    corners: false,
                     factor: 0.9,
                     alpha: Some(alpha),
                     cutoff: (mode != AlphaMode::Blend).then_some(0.5),
@@ -274,6 +279,79 @@ fn shining_veils_agree_with_the_reference() {
         0.005,
     );
     agree("shining_masks", MASK, 1.0, OUTDOORS, [512, 480], 0.005);
+}
+
+/// An unlit surface: it shines from both sides, by its corners' colours, as far as their alpha says.
+fn unlit_corners(name: &str, mode: AlphaMode) -> Stage {
+    let corner = |k: usize| {
+        let colors = [
+            [1.0, 0.1, 0.2, 0.1],
+            [0.0, 1.0, 0.3, 1.0],
+            [0.5, 0.4, 1.0, 0.4],
+            [0.9, 0.9, 0.0, 0.9],
+        ];
+        colors[[0, 1, 2, 0, 2, 3][k]]
+    };
+    let place = "translate: (-0.2, 0.7, 0.1), rotate: Euler(15, 70, 0), scale: 0.6";
+    under(name, place, "background: Linear(0.1, 0.2, 0.1),").retouch(
+        move |assets| {
+            let material = MeshMaterial {
+                scattering: Scattering::Nothing,
+                vertex_colors: true,
+                emission: [2.0; 3],
+                two_sided: true,
+                opacity: Opacity {
+                    factor: 0.9,
+                    texture: None,
+                    vertex_alpha: true,
+                    mode,
+                },
+                ..MeshMaterial::diffuse("unlit", [0.0; 3])
+            };
+            give(assets, None, material);
+            let colors = (0..6).map(|k| corner(k).map(|c| c as f32));
+            Arc::make_mut(&mut assets.meshes[0]).colors = colors.collect();
+        },
+        move |scene| {
+            for (t, surface) in of_entity(scene, 0).enumerate() {
+                let Shape::Triangle { more, .. } = &mut surface.shape else {
+                    continue;
+                };
+                let corners = [0, 1, 2].map(|k| corner(3 * t + k));
+                *more = Some(Box::new(Corners {
+                    tint: corners.map(|[r, g, b, _]| DVec3::new(r, g, b)),
+                    alpha: corners.map(|[.., alpha]| alpha),
+                    ..Corners::PLAIN
+                }));
+                surface.emission = Color::Flat(DVec3::splat(2.0));
+                surface.tinted_emission = true;
+                surface.two_sided = true;
+                repaint(surface, |m| {
+                    m.kind = Kind::Nothing;
+                    m.veil = Some(Veil {
+                        corners: true,
+                        factor: 0.9,
+                        alpha: None,
+                        cutoff: (mode != AlphaMode::Blend).then_some(0.5),
+                    });
+                });
+            }
+        },
+    )
+}
+
+#[test]
+fn corners_veil_what_only_shines() {
+    for (name, mode) in [("corner_blend", AlphaMode::Blend), ("corner_mask", MASK)] {
+        let stage = unlit_corners(name, mode);
+        let found = stage.luxel(0, 512, &options(2));
+        let estimator = Estimator {
+            max_bounces: 2,
+            lamps: true,
+        };
+        let truth = stage.reference(0, 960, estimator);
+        assert_agree(name, &found, &truth, 0.02);
+    }
 }
 
 /// What a path finds behind a veil is weighed by the density of its scattering.

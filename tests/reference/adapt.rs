@@ -72,6 +72,7 @@ pub(crate) fn scene(desc: &SceneDesc, frame: u32) -> Scene {
                 material: Rc::clone(material),
                 emission: Color::Flat(DVec3::from(entity.emissive.unwrap_or_default())),
                 tinted_emission: false,
+                two_sided: false,
                 entity: i,
             });
         }

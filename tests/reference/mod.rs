@@ -42,6 +42,8 @@ pub(crate) struct Surface {
     pub(crate) emission: Color,
     /// The corners' colours multiply the emission rather than the material.
     pub(crate) tinted_emission: bool,
+    /// Radiance on the other side too.
+    pub(crate) two_sided: bool,
     /// Index of the entity in the scene file.
     pub(crate) entity: usize,
 }
@@ -59,6 +61,8 @@ pub(crate) struct Material {
 #[derive(Clone)]
 pub(crate) struct Veil {
     pub(crate) factor: f64,
+    /// Whether the alpha of the corners counts.
+    pub(crate) corners: bool,
     /// Its red is the alpha.
     pub(crate) alpha: Option<Image>,
     /// There if at least this, else a share.
@@ -68,7 +72,10 @@ pub(crate) struct Veil {
 impl Veil {
     /// Share of rays that meet it.
     fn presence(&self, hit: &Hit) -> f64 {
-        let alpha = self.alpha.as_ref().map_or(1.0, |image| image.at(hit).x);
+        let mut alpha = self.alpha.as_ref().map_or(1.0, |image| image.at(hit).x);
+        if self.corners {
+            alpha *= hit.alpha;
+        }
         match self.cutoff {
             Some(cutoff) if self.factor * alpha >= cutoff => 1.0,
             Some(_) => 0.0,

@@ -27,6 +27,16 @@ pub(crate) enum Shape {
 pub(crate) struct Corners {
     pub(crate) uv1: [DVec2; 3],
     pub(crate) tint: [DVec3; 3],
+    pub(crate) alpha: [f64; 3],
+}
+
+impl Corners {
+    /// As if they were not there.
+    pub(crate) const PLAIN: Corners = Corners {
+        uv1: [DVec2::ZERO; 3],
+        tint: [DVec3::ONE; 3],
+        alpha: [1.0; 3],
+    };
 }
 
 /// A ray; `dir` has unit length.
@@ -53,6 +63,8 @@ pub(crate) struct Hit {
     pub(crate) uv1: DVec2,
     /// Colour of the corners, 1 where they have none.
     pub(crate) tint: DVec3,
+    /// Alpha of the corners, likewise.
+    pub(crate) alpha: f64,
     /// Smallest of the three barycentric weights; 1 for spheres.
     pub(crate) margin: f64,
 }
@@ -181,6 +193,7 @@ fn hit(scene: &Scene, ray: &Ray, surface: usize, (t, w): Crossing) -> Hit {
                 uv: sphere_uv(axes.transpose() * out),
                 uv1: DVec2::ZERO,
                 tint: DVec3::ONE,
+                alpha: 1.0,
                 margin: 1.0,
             }
         }
@@ -201,6 +214,9 @@ fn hit(scene: &Scene, ray: &Ray, surface: usize, (t, w): Crossing) -> Hit {
                 }),
                 tint: more.as_ref().map_or(DVec3::ONE, |m| {
                     m.tint[0] * w[0] + m.tint[1] * w[1] + m.tint[2] * w[2]
+                }),
+                alpha: more.as_ref().map_or(1.0, |m| {
+                    m.alpha[0] * w[0] + m.alpha[1] * w[1] + m.alpha[2] * w[2]
                 }),
                 margin: w[0].min(w[1]).min(w[2]),
             }

@@ -80,7 +80,7 @@ fn radiance(
         };
         let surface = &scene.surfaces[hit.surface];
         let wo = -ray.dir;
-        if !counted && wo.dot(hit.ng) > 0.0 {
+        if !counted && (surface.two_sided || wo.dot(hit.ng) > 0.0) {
             sum += throughput * surface.emitted(&hit);
         }
         if bounce == max_bounces {
@@ -169,7 +169,10 @@ impl Lamps {
         let way = there - position;
         let r2 = way.length_squared();
         let dir = way / r2.sqrt();
-        let cos_there = -dir.dot(normal);
+        let mut cos_there = -dir.dot(normal);
+        if scene.surfaces[lamp].two_sided {
+            cos_there = cos_there.abs();
+        }
         let f_cos = here(dir);
         if cos_there <= 0.0 || f_cos == DVec3::ZERO {
             return DVec3::ZERO;
@@ -179,7 +182,7 @@ impl Lamps {
             dir,
             from: Some(from),
         };
-        // The lamp's front is what the ray meets behind what lets it pass, or something else is in the way.
+        // The lamp is what the ray meets behind what lets it pass, or something else is in the way.
         let (mut ray, mut share, mut way) = (ray, 1.0, 0.0);
         loop {
             let Some(hit) = closest(scene, &ray).filter(|_| share > 0.0) else {

@@ -36,7 +36,7 @@ impl Attributes {
             + size_of::<DVec3>()
             + self.normals.map_or(0, |_| PerCorner::<DVec3>::BYTES)
             + self.uvs.iter().flatten().count() * PerCorner::<DVec2>::BYTES
-            + self.colors.map_or(0, |_| size_of::<[f32; 3]>());
+            + self.colors.map_or(0, |_| size_of::<[f32; 4]>());
         3 * corner + size_of::<Option<u32>>()
     }
 }

@@ -2,8 +2,8 @@
 //!
 //! Enter: a material as a primitive uses it, and decoded images. Leaves: colour, emission, opacity and the nearest
 //! scattering that luxel has (the table of `gloss`). Deliberately absent: normal textures, which are said; occlusion
-//! textures, since a path tracer computes occlusion; `doubleSided`, since every surface has two sides here (emission shines
-//! from the front alone).
+//! textures, since a path tracer computes occlusion; `doubleSided` but for emission, since every surface reflects on two
+//! sides here.
 
 use super::exact::{exact, exact_one};
 use super::gloss::{Approximated, DEFAULT_IOR, Surface};
@@ -37,12 +37,6 @@ const UNLIT: Topic = Topic {
     hint: "they light what is near them; choose another look by `material` on the entity",
 };
 
-const UNLIT_COLORS: Topic = Topic {
-    code: codes::GLTF_NOT_MODELLED,
-    says: "unlit materials have vertex colours, which do not shine",
-    hint: "bake the colours into a texture",
-};
-
 const WITHOUT_UV: Topic = Topic {
     code: codes::GLTF_WITHOUT_UV,
     says: "primitives lack the texture coordinates that their material reads: one texel colours them",
@@ -58,6 +52,8 @@ pub(super) struct Look {
     pub(super) uv_sets: [bool; 2],
     /// Whether it has vertex colours.
     pub(super) colors: bool,
+    /// Whether the alpha of any of them is below 1.
+    pub(super) alphas: bool,
 }
 
 impl Look {
@@ -152,11 +148,17 @@ impl Maker<'_> {
         let [color_info, emission_info] = infos(&file);
         let (factor, surface) = self.surface(&file, &place);
         let (color, texture) = self.textured(color_factor(factor), color_info, &place, look);
-        let opacity = self.opacity(&file, factor[3], texture, &place);
-        self.say(&file, look, &place);
+        let opacity = Opacity {
+            factor: factor[3].clamp(0.0, 1.0),
+            texture,
+            vertex_alpha: look.alphas,
+            mode: self.alpha_mode(&file, &place),
+        };
+        self.say(&file, &place);
         let mut material = MeshMaterial {
             texture,
             vertex_colors: look.colors,
+            two_sided: file.double_sided() || file.unlit(),
             opacity,
             ..MeshMaterial::diffuse(name, color)
         };
@@ -166,7 +168,6 @@ impl Maker<'_> {
             material.emission_texture = texture;
             material.color = [0.0; 3];
             material.texture = None;
-            material.vertex_colors = false;
             return material;
         }
         let (scattering, same) = surface.scattering();
@@ -255,15 +256,9 @@ impl Maker<'_> {
         }
     }
 
-    fn opacity(
-        &self,
-        file: &Material<'_>,
-        factor: f64,
-        texture: Option<TextureUse>,
-        place: &str,
-    ) -> Opacity {
-        let mode = match file.alpha_mode() {
-            FileAlphaMode::Opaque => return Opacity::OPAQUE,
+    fn alpha_mode(&self, file: &Material<'_>, place: &str) -> AlphaMode {
+        match file.alpha_mode() {
+            FileAlphaMode::Opaque => AlphaMode::Opaque,
             FileAlphaMode::Mask => {
                 let pointer = format!("{place}/alphaCutoff");
                 let cutoff = file.alpha_cutoff().unwrap_or(DEFAULT_CUTOFF as f32);
@@ -272,21 +267,13 @@ impl Maker<'_> {
                 }
             }
             FileAlphaMode::Blend => AlphaMode::Blend,
-        };
-        Opacity {
-            factor: factor.clamp(0.0, 1.0),
-            texture,
-            mode,
         }
     }
 
     /// What this material asks for and does not get.
-    fn say(&mut self, file: &Material<'_>, look: &Look, place: &str) {
+    fn say(&mut self, file: &Material<'_>, place: &str) {
         if file.unlit() {
             self.notes.add(&UNLIT, place);
-            if look.colors {
-                self.notes.add(&UNLIT_COLORS, place);
-            }
             return;
         }
         if file.normal_texture().is_some() {

@@ -43,12 +43,6 @@ const BAD_NORMAL: Topic = Topic {
     hint: "export the normals again, or say `normals: Flat` or `Smooth`",
 };
 
-const VERTEX_ALPHA: Topic = Topic {
-    code: codes::GLTF_NOT_MODELLED,
-    says: "primitives have vertex colours whose alpha is below 1, which is not modelled",
-    hint: "bake the alpha into the base colour texture",
-};
-
 /// A mesh, but for its materials.
 pub(super) struct Shaped {
     pub(super) mesh: Mesh,
@@ -189,18 +183,11 @@ impl<'a> Builder<'a> {
 
     fn append(&mut self, part: &Part<'_>) -> Result<(), Diagnostic> {
         let streams = self.streams(part)?;
-        let veiled = streams
-            .colors
-            .as_ref()
-            .is_some_and(|colors| has_alpha(colors));
-        if veiled && part.material.alpha_mode() != gltf::material::AlphaMode::Opaque {
-            self.shaped.notes.add(&VERTEX_ALPHA, &part.place);
-        }
         let order = part.indices.map(|accessor| self.source.indices(accessor));
         let order = order.transpose()?;
         let vertices = streams.positions.components.len() / 3;
         let corners = order.as_ref().map_or(vertices, Vec::len);
-        let material = self.slot(part);
+        let material = self.slot(part, &streams);
         let positions = part.attributes.positions;
         let known = self.places.remove(&positions);
         let mut places = known.unwrap_or_else(|| vec![None; vertices]);
@@ -256,11 +243,12 @@ impl<'a> Builder<'a> {
     }
 
     /// The material slot of a primitive.
-    fn slot(&mut self, part: &Part<'_>) -> u32 {
+    fn slot(&mut self, part: &Part<'_>, streams: &Streams) -> u32 {
         let look = Look {
             material: part.material.index(),
             uv_sets: part.attributes.uvs.map(|set| set.is_some()),
-            colors: part.attributes.colors.is_some(),
+            colors: streams.colors.is_some(),
+            alphas: streams.colors.as_deref().is_some_and(has_alpha),
         };
         let Shaped { looks, notes, .. } = &mut self.shaped;
         *self.slots.entry(look).or_insert_with(|| {
@@ -333,8 +321,12 @@ impl<'a> Builder<'a> {
         if self.keep.colors {
             for vertex in vertices {
                 let read = streams.colors.as_ref().and_then(|colors| colors.at(vertex));
-                let color: [f64; 3] = read.unwrap_or([1.0; 3]);
-                mesh.colors.push(color.map(share));
+                let [r, g, b]: [f64; 3] = read.unwrap_or([1.0; 3]);
+                let alpha = streams
+                    .colors
+                    .as_ref()
+                    .and_then(|colors| alpha(colors, vertex));
+                mesh.colors.push([r, g, b, alpha.unwrap_or(1.0)].map(share));
             }
         }
     }
@@ -353,6 +345,12 @@ fn share(component: f64) -> f32 {
     } else {
         0.0
     }
+}
+
+/// The alpha of a vertex's colour, if it has one.
+fn alpha(colors: &Elements, vertex: u32) -> Option<f64> {
+    let components: Option<[f64; 4]> = (colors.width == 4).then(|| colors.at(vertex))?;
+    components.map(|[.., alpha]| alpha)
 }
 
 /// Whether colours have an alpha below 1.

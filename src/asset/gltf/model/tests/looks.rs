@@ -42,6 +42,7 @@ fn factors_are_read_as_written() {
         "doubleSided": true,
     }));
     assert_eq!(material.name, "paint");
+    assert!(material.two_sided);
     assert_eq!(material.color, [0.1, 0.2, 0.3]);
     assert_eq!(material.emission, [0.5, 0.0, 5.0]);
     assert_eq!(material.opacity.mode, AlphaMode::Mask { cutoff: 0.5 });
@@ -52,6 +53,7 @@ fn factors_are_read_as_written() {
         "extensions": { "KHR_materials_ior": { "ior": 1.33 } },
     }));
     assert_eq!(material.scattering, Scattering::Plastic { ior: 1.33 });
+    assert!(!material.two_sided);
     assert_eq!(material.opacity.mode, AlphaMode::Blend);
     let material = plain(json!({
         "pbrMetallicRoughness": { "metallicFactor": 0, "roughnessFactor": 0 },
@@ -94,6 +96,7 @@ fn an_unlit_material_shines_with_its_colour() {
     let material = &read.mesh().materials[0];
     assert_eq!(material.scattering, Scattering::Nothing);
     assert_eq!(material.emission, [0.3, 0.2, 0.1]);
+    assert!(material.two_sided);
     assert!(material.emission_texture.is_some() && material.texture.is_none());
 }
 
@@ -239,11 +242,11 @@ fn an_image_that_is_listed_twice_is_one_texture() {
 }
 
 #[test]
-fn vertex_alpha_is_said_where_it_would_show() {
-    for (mode, alpha, codes) in [
-        ("BLEND", 0.5, vec!["W141"]),
-        ("BLEND", 1.0, vec![]),
-        ("OPAQUE", 0.5, vec![]),
+fn vertex_alpha_multiplies_opacity_where_it_occurs() {
+    for (mode, alpha, counts) in [
+        ("BLEND", 0.5, true),
+        ("MASK", 0.5, true),
+        ("BLEND", 1.0, false),
     ] {
         let mut draft = Draft::triangle();
         let colors = draft.floats(&[[1.0, 1.0, 1.0, alpha]; 3]);
@@ -251,7 +254,9 @@ fn vertex_alpha_is_said_where_it_would_show() {
         draft.material(json!({
             "pbrMetallicRoughness": { "metallicFactor": 0 }, "alphaMode": mode,
         }));
-        assert_eq!(draft.read().expect("a model").codes(), codes);
+        let read = draft.clean();
+        assert_eq!(read.mesh().materials[0].opacity.vertex_alpha, counts);
+        assert_eq!(read.mesh().colors[0][3], alpha);
     }
 }
 

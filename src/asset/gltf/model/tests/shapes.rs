@@ -235,20 +235,21 @@ fn vertex_colours_of_every_format_are_linear_factors() {
         );
         read.mesh().colors.clone()
     };
-    let expected = [[1.0, 0.0, 0.2]; 3];
+    let expected = |alpha: f32| [[1.0, 0.0, 0.2, alpha]; 3];
     let floats: Vec<u8> = [1.0f32, 0.0, 0.2]
         .repeat(3)
         .iter()
         .flat_map(|x| x.to_le_bytes())
         .collect();
-    assert_eq!(color("VEC3", 5126, &floats), expected);
-    assert_eq!(color("VEC4", 5121, &[255, 0, 51, 255].repeat(3)), expected);
-    let shorts: Vec<u8> = [65535u16, 0, 13107, 9]
+    assert_eq!(color("VEC3", 5126, &floats), expected(1.0));
+    let bytes = [255, 0, 51, 102].repeat(3);
+    assert_eq!(color("VEC4", 5121, &bytes), expected(0.4));
+    let shorts: Vec<u8> = [65535u16, 0, 13107, 39321]
         .repeat(3)
         .iter()
         .flat_map(|x| x.to_le_bytes())
         .collect();
-    assert_eq!(color("VEC4", 5123, &shorts), expected);
+    assert_eq!(color("VEC4", 5123, &shorts), expected(0.6));
 }
 
 #[test]
