@@ -3,18 +3,15 @@
 use super::loader::Loader;
 use super::paths::{beside, library_names, most_similar, same_name_beside};
 use super::scan::{Named, Scan, at_line};
-use super::{AlphaMode, MeshMaterial, Opacity, TextureId, TextureUse, codes, mtl, text};
+use super::{MeshMaterial, TextureId, codes, mtl, text};
 use crate::diag::Diagnostic;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// Colour of a material that gives none, as of the scene's default material.
-const NEUTRAL: [f64; 3] = [0.8; 3];
-
 /// A material library as read: its file, its text, its materials.
-struct Library {
-    path: PathBuf,
-    source: String,
+pub(super) struct Library {
+    pub(super) path: PathBuf,
+    pub(super) source: String,
     definitions: Vec<mtl::Definition>,
 }
 
@@ -25,7 +22,7 @@ pub(super) struct Source<'a> {
 }
 
 impl Source<'_> {
-    fn place(&self, diagnostic: Diagnostic, at: usize) -> Diagnostic {
+    pub(super) fn place(&self, diagnostic: Diagnostic, at: usize) -> Diagnostic {
         at_line(diagnostic, self.text, at).in_file(self.path)
     }
 
@@ -85,7 +82,7 @@ impl Loader {
     }
 
     /// Warns at a place of a file.
-    fn tell(&mut self, source: &Source<'_>, at: usize, warning: Diagnostic) {
+    pub(super) fn tell(&mut self, source: &Source<'_>, at: usize, warning: Diagnostic) {
         self.told.add(warning.code, || source.place(warning, at));
     }
 
@@ -201,108 +198,19 @@ impl Loader {
         let names = names.filter(|name| seen.insert(*name));
         let found = names.filter_map(|name| libraries.find(name));
         let paths = found.flat_map(|(library, definition)| {
-            let images = [&definition.texture, &definition.opacity_texture];
+            let images = [
+                &definition.texture,
+                &definition.emission_texture,
+                &definition.opacity_texture,
+            ];
             let images = images.into_iter().flatten();
-            images.filter_map(|(name, _)| find(&library.path, name).map(|(path, _)| path))
+            images.filter_map(|line| find(&library.path, &line.path).map(|(path, _)| path))
         });
         self.textures_ahead(paths);
     }
 
-    fn material(
-        &mut self,
-        library: &Library,
-        definition: &mtl::Definition,
-    ) -> Result<MeshMaterial, Diagnostic> {
-        let source = Source {
-            path: &library.path,
-            text: &library.source,
-        };
-        let name = &definition.name;
-        let mut texture = None;
-        if let Some((path, at)) = &definition.texture {
-            texture = self.material_texture(&source, path, *at)?;
-        }
-        let lost = definition.texture.is_some() && texture.is_none();
-        let color = match definition.color {
-            Some(color) if lost && color == [0.0; 3] => NEUTRAL,
-            Some(color) => color,
-            None if texture.is_some() => [1.0; 3],
-            None => NEUTRAL,
-        };
-        let mut warn = |code, at, says: String| {
-            self.tell(&source, at, Diagnostic::warning(code, says));
-        };
-        if texture.is_some() && color == [0.0; 3] {
-            warn(
-                codes::BLACK_FACTOR,
-                definition.at,
-                format!("the colour (Kd) of \"{name}\" is black, which hides its texture"),
-            );
-        }
-        if color.iter().any(|&c| c > 1.0) {
-            warn(
-                codes::BRIGHT_COLOR,
-                definition.at,
-                format!("the colour (Kd) of \"{name}\" is above 1, and taken as 1"),
-            );
-        }
-        Ok(MeshMaterial {
-            texture: texture.map(TextureUse::plain),
-            opacity: self.opacity(&source, definition)?,
-            emission: definition.emission,
-            ..MeshMaterial::diffuse(name, color.map(|c| c.min(1.0)))
-        })
-    }
-
-    /// How much of a material's surface is there. No one means a surface that cannot be seen: exporters that write
-    /// `Tr 1` or `d 0` mean an opaque one.
-    fn opacity(
-        &mut self,
-        source: &Source<'_>,
-        definition: &mtl::Definition,
-    ) -> Result<Opacity, Diagnostic> {
-        let name = &definition.name;
-        let mut factor = 1.0;
-        match definition.opacity {
-            Some((0.0, at)) => {
-                let says = format!("\"{name}\" would be invisible, and is taken as opaque");
-                let warning = Diagnostic::warning(codes::INVISIBLE, says);
-                self.tell(source, at, warning);
-            }
-            Some((opacity, _)) => factor = opacity,
-            None => {}
-        }
-        let mut texture = None;
-        if let Some((path, at)) = &definition.opacity_texture
-            && let Some(id) = self.material_texture(source, path, *at)?
-        {
-            if self.store.texture(id).alpha.is_some() {
-                texture = Some(TextureUse::plain(id));
-            } else if definition
-                .texture
-                .as_ref()
-                .is_none_or(|(color, _)| color != path)
-            {
-                // The colour's own image is named out of habit.
-                let says = format!("the image has no alpha: \"{name}\" stays opaque");
-                let warning = Diagnostic::warning(codes::NO_ALPHA, says);
-                self.tell(source, *at, warning);
-            }
-        }
-        let mode = match (factor, texture) {
-            (1.0, None) => AlphaMode::Opaque,
-            _ => AlphaMode::Blend,
-        };
-        Ok(Opacity {
-            factor,
-            texture,
-            vertex_alpha: false,
-            mode,
-        })
-    }
-
     /// The texture of a material; a missing file is a warning, a damaged one an error.
-    fn material_texture(
+    pub(super) fn material_texture(
         &mut self,
         source: &Source<'_>,
         name: &str,

@@ -19,6 +19,7 @@ mod gltf;
 mod limits;
 mod loader;
 mod materials;
+mod meaning;
 mod mtl;
 pub mod normals;
 mod numbers;
@@ -32,6 +33,7 @@ mod scan;
 mod tests;
 mod text;
 mod texture;
+mod texture_line;
 mod told;
 mod triangulate;
 
@@ -214,7 +216,7 @@ pub struct TextureUse {
 }
 
 impl TextureUse {
-    /// The first set of coordinates as they are, tiled and smooth: all that MTL knows.
+    /// The first set of coordinates as they are, tiled and smooth.
     #[must_use]
     pub fn plain(texture: TextureId) -> TextureUse {
         TextureUse {

@@ -1,11 +1,12 @@
 //! MTL text to materials: our own reader, since the parser's panics on legal files and knows no lines.
 //!
-//! Read: `newmtl`, `Kd`, `map_Kd`, `Ke`, `d`, `Tr`, `map_d`. What else changes the look is remembered, to be told of when the material is
-//! used.
+//! Read: `newmtl`, `Kd`, `map_Kd`, `Ke`, `map_Ke`, `d`, `Tr`, `map_d`. What else changes the look is remembered, to be told
+//! of when the material is used.
 
 use super::codes;
 use super::scan::at_line;
 use super::text::{Line, Lines};
+use super::texture_line::TextureLine;
 use crate::diag::Diagnostic;
 
 /// A material as an MTL file has it.
@@ -15,16 +16,18 @@ pub(super) struct Definition {
     pub(super) at: usize,
     /// `Kd`, linear.
     pub(super) color: Option<[f64; 3]>,
-    /// `map_Kd`: the path as written, and the byte offset of the line.
-    pub(super) texture: Option<(String, usize)>,
+    /// `map_Kd`.
+    pub(super) texture: Option<TextureLine>,
     /// `d`, or 1 − `Tr` where there is no `d`, and the byte offset of the line.
     pub(super) opacity: Option<(f64, usize)>,
-    /// `map_d`, like `texture`.
-    pub(super) opacity_texture: Option<(String, usize)>,
+    /// `map_d`.
+    pub(super) opacity_texture: Option<TextureLine>,
     /// Whether `opacity` comes from `d`, which counts where there are both.
     dissolve: bool,
     /// `Ke`, linear.
-    pub(super) emission: [f64; 3],
+    pub(super) emission: Option<[f64; 3]>,
+    /// `map_Ke`.
+    pub(super) emission_texture: Option<TextureLine>,
     /// Keywords that change the look and are not modelled, with the byte offset of their line.
     pub(super) not_modelled: Vec<(String, usize)>,
 }
@@ -46,27 +49,6 @@ const WITHOUT_EFFECT: [&str; 10] = [
 
 /// Highest illumination model that has neither reflection nor transparency.
 const LAST_PLAIN_MODEL: f64 = 2.0;
-
-/// Options of a texture line, with the greatest number of values that each takes.
-const OPTIONS: [(&str, usize); 14] = [
-    ("-blendu", 1),
-    ("-blendv", 1),
-    ("-bm", 1),
-    ("-boost", 1),
-    ("-cc", 1),
-    ("-clamp", 1),
-    ("-colorspace", 1),
-    ("-imfchan", 1),
-    ("-mm", 2),
-    ("-o", 3),
-    ("-s", 3),
-    ("-t", 3),
-    ("-texres", 1),
-    ("-type", 1),
-];
-
-/// Options whose values are between one and three numbers.
-const VECTOR_OPTIONS: [&str; 3] = ["-o", "-s", "-t"];
 
 /// Reads the materials of an MTL file, in file order.
 ///
@@ -103,7 +85,8 @@ impl Definition {
             opacity: None,
             opacity_texture: None,
             dissolve: false,
-            emission: [0.0; 3],
+            emission: None,
+            emission_texture: None,
             not_modelled: Vec::new(),
         }
     }
@@ -111,8 +94,9 @@ impl Definition {
     fn line(&mut self, line: &Line<'_>) -> Result<(), String> {
         match line.keyword {
             "Kd" => self.color = Some(color(line)?),
-            "Ke" => self.emission = color(line)?,
+            "Ke" => self.emission = Some(color(line)?),
             "map_Kd" => self.texture = self.texture(line).or(self.texture.take()),
+            "map_Ke" => self.emission_texture = self.texture(line).or(self.emission_texture.take()),
             "map_d" => self.opacity_texture = self.texture(line).or(self.opacity_texture.take()),
             "d" => {
                 self.opacity = Some((self.opacity(line)?, line.at));
@@ -129,15 +113,15 @@ impl Definition {
         Ok(())
     }
 
-    /// The path of a texture line and its place.
-    fn texture(&mut self, line: &Line<'_>) -> Option<(String, usize)> {
-        let (path, options) = texture_path(&line.rest);
+    /// A texture line, if it names a file.
+    fn texture(&mut self, line: &Line<'_>) -> Option<TextureLine> {
+        let (texture, ignored) = TextureLine::read(&line.rest, line.at);
         let keyword = line.keyword;
-        let options = options
+        let ignored = ignored
             .into_iter()
             .map(|option| (format!("{keyword} {option}"), line.at));
-        self.not_modelled.extend(options);
-        (!path.is_empty()).then_some((path, line.at))
+        self.not_modelled.extend(ignored);
+        (!texture.path.is_empty()).then_some(texture)
     }
 
     /// `d x` or `Tr x`, at most 1. `d -halo x`, opacity by the angle of sight, is not modelled.
@@ -204,61 +188,4 @@ fn changes_the_look(keyword: &str, values: &str) -> bool {
         "Ks" | "Kt" | "Pm" | "Ps" | "Pc" | "Pcr" => !all(0.0),
         _ => true,
     }
-}
-
-/// Splits what follows `map_Kd` or `map_d` into the path, which may have spaces, and the options that would change the look.
-fn texture_path(rest: &str) -> (String, Vec<&str>) {
-    let mut rest = rest.trim();
-    let mut effective = Vec::new();
-    while let Some((option, after)) = split_word(rest) {
-        let Some(&(_, most)) = OPTIONS.iter().find(|(name, _)| *name == option) else {
-            break;
-        };
-        let mut values = Vec::new();
-        rest = after;
-        while values.len() < most {
-            let Some((value, after)) = split_word(rest) else {
-                break;
-            };
-            if VECTOR_OPTIONS.contains(&option) && value.parse::<f64>().is_err() {
-                break;
-            }
-            values.push(value);
-            rest = after;
-        }
-        if !is_neutral(option, &values) {
-            effective.push(option);
-        }
-    }
-    (unquote(rest).to_owned(), effective)
-}
-
-/// Whether an option leaves a colour texture as it is.
-fn is_neutral(option: &str, values: &[&str]) -> bool {
-    let numbers: Vec<f64> = values
-        .iter()
-        .filter_map(|value| value.parse().ok())
-        .collect();
-    match option {
-        "-s" => numbers.iter().all(|&x| x == 1.0),
-        "-o" | "-t" => numbers.iter().all(|&x| x == 0.0),
-        "-mm" => numbers == [0.0, 1.0],
-        "-clamp" | "-cc" => values == ["off"],
-        "-imfchan" | "-type" => false,
-        _ => true,
-    }
-}
-
-/// The first word, and what follows it.
-fn split_word(text: &str) -> Option<(&str, &str)> {
-    let text = text.trim_start();
-    let end = text.find(char::is_whitespace).unwrap_or(text.len());
-    (end > 0).then(|| (&text[..end], text[end..].trim_start()))
-}
-
-/// Drops a pair of quotation marks around a name.
-pub(super) fn unquote(name: &str) -> &str {
-    name.strip_prefix('"')
-        .and_then(|name| name.strip_suffix('"'))
-        .unwrap_or(name)
 }

@@ -1,7 +1,7 @@
 //! Paths that files name, and what a wrong one may have meant.
 
-use super::mtl::unquote;
 use super::text::without_comment;
+use super::texture_line::unquote;
 use std::path::{Path, PathBuf};
 
 /// Bytes of the longest name that is compared with others: file systems have no longer ones.

@@ -198,13 +198,17 @@ fn emission(wave: &mut Wave, bounce: Bounce) {
             continue;
         }
         let material = &scene.materials[wave.surfaces.material[i] as usize];
-        let mut mean = Vec3::from(material.emission);
-        let dir = get(&wave.paths.rays.dir, i);
-        let mut ng = get(&wave.surfaces.ng, i);
-        if material.two_sided {
-            (mean, ng) = (mean * 2.0, towards(ng, -dir));
+        let mean = Vec3::from(material.emission);
+        if mean.max_element() <= 0.0 {
+            continue;
         }
-        if mean.max_element() <= 0.0 || dir.dot(ng) >= 0.0 {
+        let dir = get(&wave.paths.rays.dir, i);
+        let ng = get(&wave.surfaces.ng, i);
+        let (ng, mean) = match material.two_sided {
+            true => (towards(ng, -dir), mean * 2.0),
+            false => (ng, mean),
+        };
+        if dir.dot(ng) >= 0.0 {
             continue;
         }
         let uv = [wave.surfaces.uv[0][i], wave.surfaces.uv[1][i]];

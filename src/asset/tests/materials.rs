@@ -93,7 +93,15 @@ fn texture_lines_have_options_and_spaces() {
     for (line, codes) in [
         ("map_Kd my tex.png", vec![]),
         ("map_Kd -s 1 1 1 -o 0 -clamp off -bm 2 my tex.png", vec![]),
-        ("map_Kd -s 2 2 1 -clamp on my tex.png", vec![("W104", 2)]),
+        ("map_Kd -s 2 2 1 -clamp on my tex.png", vec![]),
+        ("map_Kd -mm 0 0.5 -o 1 my tex.png", vec![]),
+        ("map_Kd -mm 0.5 1 -t 1 my tex.png", vec![("W104", 2)]),
+        ("map_Kd -mm 0 -1 -cc on my tex.png", vec![("W104", 2)]),
+        ("map_Kd -s 1e999 my tex.png", vec![("W104", 2)]),
+        (
+            "map_Kd my tex.png\nKe 0\nmap_Ke my tex.png",
+            vec![("W113", 1)],
+        ),
         ("map_Kd .\\my tex.png", vec![]),
         ("map_Kd C:\\art\\my tex.png", vec![("W112", 2)]),
         ("map_Kd My Tex.png", vec![("W103", 2)]),
@@ -101,7 +109,7 @@ fn texture_lines_have_options_and_spaces() {
         ("map_Kd my tex.png\nmap_d my tex.png", vec![]),
         (
             "map_Kd my tex.png\nmap_d -s 2 2 2 ./my tex.png",
-            vec![("W118", 3), ("W104", 3)],
+            vec![("W118", 3)],
         ),
         ("map_Kd my tex.png\nmap_d gone.png", vec![("W103", 3)]),
     ] {
@@ -188,4 +196,40 @@ fn very_many_names_are_found_and_missed_quickly() {
     let counted = warnings.iter().filter(|one| one.message.ends_with(&more));
     assert_eq!(counted.count(), 2, "{warnings:?}");
     assert!(start.elapsed().as_secs() < 30, "{:?}", start.elapsed());
+}
+
+/// u' = scale · u + offset, and what multiplies the texels multiplies the factor.
+#[test]
+fn texture_lines_place_their_image() {
+    let image = png(png::ColorType::Rgba, png::BitDepth::Eight, 1, &[1, 2, 3, 4]);
+    let mtl = "newmtl m\nKd 0.5\nmap_Kd -s 2 3 1 -o 0.25 -1 t.png\nmap_Ke -mm 0 4 -clamp on t.png\nmap_d -mm 0 0.5 -s 2 t.png";
+    let obj = format!("mtllib m.mtl\n{TRIANGLE}usemtl m\nf 1 2 3");
+    let files: [(&str, &[u8]); 3] = [
+        ("a.obj", obj.as_bytes()),
+        ("m.mtl", mtl.as_bytes()),
+        ("t.png", &image),
+    ];
+    let (mesh, warnings) = Folder::of(&files).load("a.obj");
+    assert!(warnings.is_empty(), "{warnings:?}");
+    let material = mesh.expect("a mesh").materials[0].clone();
+    assert_eq!((material.color, material.emission), ([0.5; 3], [4.0; 3]));
+    let color = material.texture.expect("a texture");
+    let placed = TextureUse {
+        transform: Some([2.0, 0.0, 0.25, 0.0, 3.0, -1.0]),
+        ..TextureUse::plain(color.texture)
+    };
+    assert_eq!(color, placed);
+    let clamped = TextureUse {
+        wrap: [Wrap::Clamp; 2],
+        ..TextureUse::plain(color.texture)
+    };
+    assert_eq!(material.emission_texture, Some(clamped));
+    let veil = TextureUse {
+        transform: Some([2.0, 0.0, 0.0, 0.0, 1.0, 0.0]),
+        ..TextureUse::plain(color.texture)
+    };
+    assert_eq!(
+        (material.opacity.factor, material.opacity.texture),
+        (0.5, Some(veil))
+    );
 }
