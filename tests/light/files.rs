@@ -175,7 +175,7 @@ const UPRIGHT_MIRRORED: &str =
 fn a_lamp_that_shines_from_both_sides() {
     for (name, place) in [("two_sided", UPRIGHT), ("two_mirrored", UPRIGHT_MIRRORED)] {
         let stage = sided_lamp(name, place, true);
-        agree(name, &stage, 2048, 2880, 2, true);
+        agree(name, &stage, 4096, 5760, 1, true);
         let flat = stage.flat(0, &options(1));
         assert_eq!(flat.lights.triangles.two_sided, [true; 2]);
         let one = sided_lamp(name, place, false).flat(0, &options(1));
@@ -194,7 +194,7 @@ fn estimators_agree_on_both_sides() {
             mis,
             ..options(1)
         };
-        stage.luxel(0, if nee { 2048 } else { 16384 }, &options)
+        stage.luxel(0, if nee { 8192 } else { 16384 }, &options)
     };
     let truth = picture(true, true);
     assert_agree("light samples alone", &picture(true, false), &truth, 0.02);

@@ -6,6 +6,7 @@
 #[path = "../reference/mod.rs"]
 mod reference;
 
+mod acne;
 mod agreement;
 mod closed;
 mod estimators;
