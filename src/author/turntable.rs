@@ -39,7 +39,7 @@ const FIRST_DEG: f64 = -35.0;
 const FLOOR_RADIUS: f64 = 1e5;
 
 /// The key light: far and large, so that near and far get the same of it and shadows are soft.
-const KEY_RADIUS: f64 = 600.0;
+const KEY_RADIUS: f64 = 1100.0;
 const KEY_AT: [f64; 3] = [-1800.0, 3100.0, 1700.0];
 
 /// Radiance of the background, and what a white surface that faces the key light gets of it; slightly cool, slightly
@@ -240,7 +240,7 @@ fn key() -> Placed<EntityDesc> {
     let distance = KEY_AT.iter().map(|x| x * x).sum::<f64>().sqrt();
     let sine = KEY_RADIUS / distance;
     // E = π L sin² α (closed form for a sphere that is wholly above the surface's horizon), and E / π is wanted.
-    let radiance = KEY.map(|share| (share / (sine * sine)).round());
+    let radiance = KEY.map(|share| (share / (sine * sine) * 10.0).round() / 10.0);
     entity(EntityDesc {
         name: Some("key".to_owned()),
         shape: Some(ShapeDesc::Sphere {
