@@ -13,7 +13,7 @@ type Rule = (
 );
 
 const RULES: &[Rule] = &[
-    ("math", &[], &["glam"]),
+    ("math", &[], &["glam", "libc"]),
     ("diag", &[], &[]),
     ("flat", &["math"], &["glam"]),
     ("scene", &["diag"], &["ron", "serde", "strsim", "thiserror"]),
@@ -98,6 +98,7 @@ const CRATES: &[&str] = &[
     "hecs",
     "image",
     "indicatif",
+    "libc",
     "memchr",
     "png",
     "rayon",

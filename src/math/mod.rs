@@ -4,6 +4,7 @@
 pub mod aabb;
 pub mod func;
 pub(crate) mod lanes;
+pub mod pages;
 pub mod rotation;
 pub mod srgb;
 

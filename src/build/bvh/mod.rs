@@ -5,7 +5,9 @@
 //!
 //! Deliberately absent: spatial splits, refitting, and any knowledge of rays.
 
+mod item;
 mod linear;
+mod partition;
 mod split;
 mod tree;
 pub mod validate;
@@ -13,6 +15,19 @@ pub mod validate;
 use crate::flat::{BLOCK, Bvh, SphereBlock, Triangles};
 use crate::math::{Aabb, Vec3};
 use std::ops::Range;
+
+/// Lanes of a block of spheres.
+const SPHERES: usize = BLOCK;
+
+/// Items that one thread handles at a time where a range is shared by several: 512 KiB of them, which a second-level
+/// cache holds.
+const CHUNK: usize = 1 << 14;
+
+/// Ranges of at least so many items are shared by threads.
+const SHARED: usize = 2 * CHUNK;
+
+/// Subtrees of at least so many items are grown by tasks of their own: some milliseconds of work.
+const SUBTREE: usize = 8192;
 
 /// How much of a tree is built. The picture is the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -71,7 +86,7 @@ pub struct Built {
 /// box: it is stored, and never hit.
 #[must_use]
 pub fn build(p: &Primitives, accel: Accel) -> Built {
-    let mut items = items_of(p);
+    let mut items = item::items_of(p);
     let root = match accel {
         Accel::Bvh => tree::grow(&mut items),
         Accel::Box if !p.groups.is_empty() => tree::over_kinds(&items, p.groups),
@@ -86,7 +101,7 @@ pub fn build(p: &Primitives, accel: Accel) -> Built {
 /// Spheres in the order given, eight to a block, the last one padded.
 #[must_use]
 pub fn sphere_blocks(spheres: &[SphereItem]) -> Vec<SphereBlock> {
-    spheres.chunks(BLOCK).map(linear::sphere_block).collect()
+    spheres.chunks(SPHERES).map(linear::sphere_block).collect()
 }
 
 /// The f32 box of a sphere, rounded outward; empty if something is not finite.
@@ -126,19 +141,4 @@ fn triangle_bounds(v: &[Vec3; 3]) -> Aabb {
     } else {
         Aabb::EMPTY
     }
-}
-
-/// One box per primitive: triangles, then spheres, then instances.
-fn items_of(p: &Primitives) -> Vec<tree::Item> {
-    use tree::{Item, Kind};
-    let triangles = p.triangles.iter().map(triangle_bounds);
-    let spheres = p.spheres.iter().map(|s| sphere_bounds(s.center, s.radius));
-    let instances = p.instances.iter().map(|&b| finite_or_empty(b));
-    let number = |kind| move |(i, bounds)| Item::new(bounds, kind, i as u32);
-    triangles
-        .enumerate()
-        .map(number(Kind::Triangle))
-        .chain(spheres.enumerate().map(number(Kind::Sphere)))
-        .chain(instances.enumerate().map(number(Kind::Instance)))
-        .collect()
 }

@@ -1,90 +1,101 @@
-//! Where a range of items splits: the surface area heuristic over bins of centroids (Wald 2007), counted in blocks.
+//! Where a range of items splits: the surface area heuristic over bins of centres (Wald, "On fast Construction of
+//! SAH-based Bounding Volume Hierarchies", 2007), counted in blocks.
+#![allow(
+    clippy::needless_range_loop,
+    reason = "axes are numbers here: several arrays are indexed by one"
+)]
 
-use super::tree::{Item, Kind};
+use super::item::{Bounds, Extent, Item, Kinds};
+use super::{CHUNK, SHARED};
 use crate::flat::BLOCK;
-use crate::math::{Aabb, Vec3};
+use glam::Vec4;
+use rayon::prelude::*;
 
 /// Cost of an inner node in block tests. A node step is a box test and the choice of the next child; a block test is
 /// eight watertight triangles, about twice the work, but a node is shared by up to eight children.
 pub(super) const NODE_COST: f32 = 0.4;
 
-/// Bins per axis.
+/// Bins per axis, for ranges of at least [`MANY`] items and for smaller ones. Powers of two.
 const BINS: usize = 16;
+const FEW_BINS: usize = 8;
+
+/// Bins cost as much to sweep as items to fill in.
+const MANY: usize = 64;
 
 /// Units of a leaf at most: four blocks, beyond which no estimate is worth more than a split.
-const MAX_LEAF: u64 = 4 * BLOCK as u64;
+const MAX_LEAF: u32 = 4 * BLOCK as u32;
 
-/// Units up to which a leaf of one kind is not questioned: half a block.
-const MIN_LEAF: u64 = BLOCK as u64 / 2;
+/// Units up to which a leaf of one kind is not questioned: one block. Asking finds a cut for one in a hundred of them.
+const MIN_LEAF: u32 = BLOCK as u32;
 
-/// Just below the number of bins, so that the largest centroid falls into the last one.
-const BIN_SCALE: f32 = BINS as f32 * (1.0 - 4.0 * f32::EPSILON);
+/// Added to a small number, leaves its nearest integer in the low bits: floats are one apart from here on.
+const ROUND: f32 = 8_388_608.0;
 
 /// How a range of items falls in two.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Cut {
-    /// Items whose bin on `axis` is below `bin` go left.
-    Bin {
-        axis: usize,
-        low: f32,
-        scale: f32,
-        bin: usize,
-    },
+    /// Items with a place below the limit on some axis go left.
+    Bin { grid: Grid, limit: Vec4 },
     /// Half of the items, ordered along the axis, go left.
     Median { axis: usize },
     /// Items of the first item's kind go left.
     Kind,
 }
 
-/// A triangle or a sphere is a lane of a block; an instance weighs as much as a block, since a whole walk hangs on it.
-pub(super) fn units(item: &Item) -> u64 {
-    match item.kind {
-        Kind::Triangle | Kind::Sphere => 1,
-        Kind::Instance => BLOCK as u64,
+/// How centres fall into bins.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Grid {
+    low: Vec4,
+    /// Bins per length; 0 on an axis without extent.
+    scale: Vec4,
+}
+
+impl Grid {
+    fn new(extent: &Extent, bins: usize) -> Grid {
+        let size = extent.centers.max - extent.centers.min;
+        let scale = |size: f32| {
+            let scale = bins as f32 / size;
+            if scale.is_finite() { scale } else { 0.0 }
+        };
+        Grid {
+            low: extent.centers.min,
+            scale: Vec4::new(scale(size.x), scale(size.y), scale(size.z), 0.0),
+        }
+    }
+
+    /// On each axis [`ROUND`] plus the bin of a centre, but the last bin has no end.
+    #[inline]
+    pub(super) fn place(&self, center: Vec4) -> Vec4 {
+        // Half a bin less, so that the nearest is the one below.
+        (center - self.low) * self.scale - Vec4::splat(0.5) + Vec4::splat(ROUND)
+    }
+
+    /// The cut in front of a bin, which is not the first.
+    fn cut(self, axis: usize, bin: usize) -> Cut {
+        let mut limit = Vec4::NEG_INFINITY;
+        limit[axis] = ROUND + bin as f32;
+        Cut::Bin { grid: self, limit }
     }
 }
 
 /// Blocks that so many units fill.
-pub(super) fn blocks(units: u64) -> f32 {
-    units.div_ceil(BLOCK as u64) as f32
+#[inline]
+pub(super) fn blocks(units: u32) -> f32 {
+    units.div_ceil(BLOCK as u32) as f32
 }
 
-/// Half of the surface area; 0 for the empty box.
-pub(super) fn half_area(b: &Aabb) -> f32 {
-    if b.is_empty() { 0.0 } else { b.half_area() }
-}
-
-/// The box of all.
-pub(super) fn bounds_of(items: &[Item]) -> Aabb {
-    items.iter().fold(Aabb::EMPTY, |b, i| b.union(i.bounds))
-}
-
-/// NaN for the empty box.
-fn centroid(item: &Item) -> Vec3 {
-    item.bounds.min * 0.5 + item.bounds.max * 0.5
-}
-
-/// The box of the centroids.
-fn centroids(items: &[Item]) -> Aabb {
-    items
-        .iter()
-        .filter(|i| !i.bounds.is_empty())
-        .fold(Aabb::EMPTY, |b, i| b.with(centroid(i)))
-}
-
-/// NaN falls into bin 0.
-fn bin_of(x: f32, low: f32, scale: f32) -> usize {
-    (((x - low) * scale) as usize).min(BINS - 1)
-}
-
-fn mixed(items: &[Item]) -> bool {
-    items.windows(2).any(|w| w[0].kind != w[1].kind)
+fn units_of(items: &[Item], kinds: Kinds) -> u32 {
+    if kinds == Kinds::TRIANGLE || kinds == Kinds::SPHERE {
+        items.len() as u32
+    } else {
+        items.iter().map(|i| i.units()).sum()
+    }
 }
 
 /// The cheapest cut by the heuristic, or nothing when a leaf is cheaper.
-pub(super) fn choose(items: &[Item], bounds: &Aabb) -> Option<Cut> {
-    let all: u64 = items.iter().map(units).sum();
-    let mixed = mixed(items);
+pub(super) fn choose(items: &[Item], extent: &Extent) -> Option<Cut> {
+    let all = units_of(items, extent.kinds);
+    let mixed = extent.kinds.mixed();
     if items.len() == 1 || (all <= MIN_LEAF && !mixed) {
         return None;
     }
@@ -96,142 +107,133 @@ pub(super) fn choose(items: &[Item], bounds: &Aabb) -> Option<Cut> {
     } else {
         f32::INFINITY
     };
-    match cheapest_bin(items) {
-        Some((work, cut)) if NODE_COST + work / half_area(bounds) < leaf => Some(cut),
+    let cheapest = if items.len() >= MANY {
+        cheapest_bin::<BINS>
+    } else {
+        cheapest_bin::<FEW_BINS>
+    };
+    match cheapest(items, extent) {
+        Some((work, cut)) if NODE_COST + work / extent.bounds.half_area() < leaf => Some(cut),
         _ if leaf.is_finite() => None,
         _ if mixed => Some(Cut::Kind),
-        _ => median(items),
+        _ => median(items, extent),
     }
 }
 
-/// The cut at the median of the longest axis of centroids, or by kind; nothing for a block's worth of one kind.
-pub(super) fn median(items: &[Item]) -> Option<Cut> {
-    let all: u64 = items.iter().map(units).sum();
+/// The cut at the median of the longest axis of centres, or by kind; nothing for a block's worth of one kind.
+pub(super) fn median(items: &[Item], extent: &Extent) -> Option<Cut> {
     if items.len() == 1 {
         None
-    } else if all > BLOCK as u64 {
-        let c = centroids(items);
-        let extent = c.max - c.min;
-        let axis = if extent.x >= extent.y && extent.x >= extent.z {
+    } else if units_of(items, extent.kinds) > BLOCK as u32 {
+        let size = extent.centers.max - extent.centers.min;
+        let axis = if size.x >= size.y && size.x >= size.z {
             0
         } else {
-            1 + usize::from(extent.z > extent.y)
+            1 + usize::from(size.z > size.y)
         };
         Some(Cut::Median { axis })
     } else {
-        mixed(items).then_some(Cut::Kind)
+        extent.kinds.mixed().then_some(Cut::Kind)
     }
 }
 
-/// Moves the left items of the cut to the front; returns their number, neither none nor all.
-pub(super) fn partition(items: &mut [Item], cut: &Cut) -> usize {
-    match *cut {
-        Cut::Bin {
-            axis,
-            low,
-            scale,
-            bin,
-        } => partition_by(items, |i| bin_of(centroid(i)[axis], low, scale) < bin),
-        Cut::Kind => {
-            let kind = items[0].kind;
-            partition_by(items, |i| i.kind == kind)
+/// Boxes and units by axis and bin.
+struct Bins<const N: usize> {
+    bounds: [[Bounds; N]; 3],
+    units: [[u32; N]; 3],
+}
+
+impl<const N: usize> Bins<N> {
+    const EMPTY: Bins<N> = Bins {
+        bounds: [[Bounds::NOTHING; N]; 3],
+        units: [[0; N]; 3],
+    };
+
+    /// Bins the items. Neighbours tend to fall into the same bins: two sets in turns halve the wait for what was just
+    /// stored.
+    fn of(items: &[Item], grid: &Grid) -> Bins<N> {
+        let mut bins = Bins::EMPTY;
+        let (front, back) = items.split_at(items.len() / 2);
+        for (a, b) in front.iter().zip(back) {
+            let (at_a, at_b) = (Self::bins_of(a, grid), Self::bins_of(b, grid));
+            bins.add(a, at_a);
+            bins.add(b, at_b);
         }
-        Cut::Median { axis } => {
-            let half = items.len() / 2;
-            items.select_nth_unstable_by(half, |a, b| {
-                let by_place = centroid(a)[axis].total_cmp(&centroid(b)[axis]);
-                by_place.then((a.kind, a.index).cmp(&(b.kind, b.index)))
-            });
-            half
+        for item in &back[front.len()..] {
+            bins.add(item, Self::bins_of(item, grid));
         }
-    }
-}
-
-fn partition_by(items: &mut [Item], left: impl Fn(&Item) -> bool) -> usize {
-    let mut end = 0;
-    for i in 0..items.len() {
-        if left(&items[i]) {
-            items.swap(i, end);
-            end += 1;
-        }
-    }
-    end
-}
-
-#[derive(Clone, Copy)]
-struct Bin {
-    bounds: Aabb,
-    units: u64,
-}
-
-const EMPTY_BIN: Bin = Bin {
-    bounds: Aabb::EMPTY,
-    units: 0,
-};
-
-impl Bin {
-    fn add(&mut self, other: &Bin) {
-        self.bounds = self.bounds.union(other.bounds);
-        self.units += other.units;
+        bins
     }
 
-    /// Area times blocks.
-    fn work(&self) -> f32 {
-        half_area(&self.bounds) * blocks(self.units)
+    #[inline]
+    fn bins_of(item: &Item, grid: &Grid) -> [usize; 3] {
+        let (first, last) = (ROUND, ROUND + (N - 1) as f32);
+        let place = grid.place(item.center());
+        let place = place.max(Vec4::splat(first)).min(Vec4::splat(last));
+        [place.x, place.y, place.z].map(|x| x.to_bits() as usize % N)
     }
-}
 
-/// The cut of least work, Σ area · blocks, over all bins of all axes; nothing when every centroid is the same.
-fn cheapest_bin(items: &[Item]) -> Option<(f32, Cut)> {
-    let c = centroids(items);
-    let scale = Vec3::splat(BIN_SCALE) / (c.max - c.min);
-    let mut bins = [[EMPTY_BIN; BINS]; 3];
-    for item in items {
-        let x = centroid(item);
-        let one = Bin {
-            bounds: item.bounds,
-            units: units(item),
-        };
-        for (axis, row) in bins.iter_mut().enumerate() {
-            row[bin_of(x[axis], c.min[axis], scale[axis])].add(&one);
+    #[inline]
+    fn add(&mut self, item: &Item, at: [usize; 3]) {
+        let units = item.units();
+        for axis in 0..3 {
+            self.bounds[axis][at[axis]].add(item.min, item.max);
+            self.units[axis][at[axis]] += units;
         }
     }
+
+    fn merge(mut self, other: &Bins<N>) -> Bins<N> {
+        for axis in 0..3 {
+            for bin in 0..N {
+                let bounds = &mut self.bounds[axis][bin];
+                *bounds = bounds.union(&other.bounds[axis][bin]);
+                self.units[axis][bin] += other.units[axis][bin];
+            }
+        }
+        self
+    }
+
+    /// The first bin right of the cheapest cut of one axis, with its work. The extreme centres are in the first and the
+    /// last bin: no side is empty.
+    fn sweep(&self, axis: usize) -> (f32, usize) {
+        let (bounds, units) = (&self.bounds[axis], &self.units[axis]);
+        let mut right = [0.0; N];
+        let (mut sum, mut count) = (Bounds::NOTHING, 0);
+        for i in (1..N).rev() {
+            sum = sum.union(&bounds[i]);
+            count += units[i];
+            right[i] = sum.half_area() * blocks(count);
+        }
+        let mut best = (f32::INFINITY, 1);
+        let (mut sum, mut count) = (Bounds::NOTHING, 0);
+        for i in 1..N {
+            sum = sum.union(&bounds[i - 1]);
+            count += units[i - 1];
+            let work = sum.half_area() * blocks(count) + right[i];
+            if work < best.0 {
+                best = (work, i);
+            }
+        }
+        best
+    }
+}
+
+/// The cut of least work, Σ area · blocks, over all bins of all axes; nothing when every centre is the same.
+fn cheapest_bin<const N: usize>(items: &[Item], extent: &Extent) -> Option<(f32, Cut)> {
+    let grid = Grid::new(extent, N);
+    let bins = if items.len() >= SHARED {
+        items
+            .par_chunks(CHUNK)
+            .map(|chunk| Bins::<N>::of(chunk, &grid))
+            .reduce_with(|a, b| a.merge(&b))?
+    } else {
+        Bins::of(items, &grid)
+    };
     let mut best: Option<(f32, Cut)> = None;
-    for axis in 0..3 {
-        // An infinite or undefined scale is an axis without extent.
-        if !scale[axis].is_finite() {
-            continue;
-        }
-        if let Some((work, bin)) = sweep(&bins[axis])
-            && best.is_none_or(|(least, _)| work < least)
-        {
-            let cut = Cut::Bin {
-                axis,
-                low: c.min[axis],
-                scale: scale[axis],
-                bin,
-            };
-            best = Some((work, cut));
-        }
-    }
-    best
-}
-
-/// The first bin right of the cheapest cut of one axis, with its work.
-fn sweep(row: &[Bin; BINS]) -> Option<(f32, usize)> {
-    let mut right = [(0.0, 0); BINS];
-    let mut sum = EMPTY_BIN;
-    for i in (1..BINS).rev() {
-        sum.add(&row[i]);
-        right[i] = (sum.work(), sum.units);
-    }
-    let mut best: Option<(f32, usize)> = None;
-    let mut left = EMPTY_BIN;
-    for i in 1..BINS {
-        left.add(&row[i - 1]);
-        let work = left.work() + right[i].0;
-        if left.units > 0 && right[i].1 > 0 && best.is_none_or(|(least, _)| work < least) {
-            best = Some((work, i));
+    for axis in (0..3).filter(|&axis| grid.scale[axis] > 0.0) {
+        let (work, bin) = bins.sweep(axis);
+        if best.is_none_or(|(least, _)| work < least) {
+            best = Some((work, grid.cut(axis, bin)));
         }
     }
     best

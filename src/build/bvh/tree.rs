@@ -1,57 +1,41 @@
 //! The tree while it grows: items partitioned in place, nodes over ranges of them, eight children at a time.
 
-use super::split;
+use super::SUBTREE;
+use super::item::{Extent, Item, Kinds};
+use super::partition::partition;
+use super::split::{self, Cut};
 use crate::flat::bvh::{MAX_DEPTH, WIDTH};
 use crate::math::Aabb;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// What an item is; the order is that of the children in which a mixed leaf falls apart.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Kind {
-    /// A triangle.
-    Triangle,
-    /// A sphere.
-    Sphere,
-    /// An instance.
-    Instance,
-}
-
-/// A primitive as the builder sees it.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Item {
-    /// Its box; empty if it can never be hit.
-    pub(super) bounds: Aabb,
-    /// What it is.
-    pub(super) kind: Kind,
-    /// Its index among those of its kind.
-    pub(super) index: u32,
-}
-
-impl Item {
-    pub(super) fn new(bounds: Aabb, kind: Kind, index: u32) -> Item {
-        Item {
-            bounds,
-            kind,
-            index,
-        }
-    }
-}
-
-/// A node with its box, over a range of the items in their final order.
+/// A child of a growing node.
 #[derive(Clone, Debug)]
-pub(super) struct BuildNode {
+pub(super) struct Child {
     pub(super) bounds: Aabb,
     pub(super) shape: Shape,
 }
 
-/// What a node is.
+/// What a child is.
 #[derive(Clone, Debug)]
 pub(super) enum Shape {
-    /// Items of one kind.
-    Leaf(Range<usize>),
-    /// Two to eight children.
-    Inner(Vec<BuildNode>),
+    /// A range of the items in their final order, all of one kind.
+    Leaf(Range<u32>),
+    /// A node of the same grove.
+    Node(u32),
+    /// The first node of a grove within this one.
+    Grove(u32),
+}
+
+/// An inner node: two to eight children.
+pub(super) type BuildNode = [Option<Child>; WIDTH];
+
+/// Nodes that one task grew, and those that further tasks grew below them.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Grove {
+    /// Every node follows its parent.
+    pub(super) nodes: Vec<BuildNode>,
+    pub(super) groves: Vec<Grove>,
 }
 
 /// Inner levels that the surface area heuristic may shape. Below, every node splits its largest part at the median
@@ -60,46 +44,59 @@ pub(super) enum Shape {
 const SAH_DEPTH: usize = 32;
 const _: () = assert!(MAX_DEPTH - SAH_DEPTH >= 12);
 
-/// Subtrees of at least so many items grow in parallel: some milliseconds of work.
-const PARALLEL: usize = 8192;
-
-/// Partitions the items and returns the root over them, or nothing over none.
-pub(super) fn grow(items: &mut [Item]) -> Option<BuildNode> {
+/// Partitions the items and returns the root over them with what is below it, or nothing over none.
+pub(super) fn grow(items: &mut [Item]) -> Option<(Child, Grove)> {
     (!items.is_empty()).then(|| {
-        let root = Part::new(items, 0).decide(0);
-        root.grow(0)
+        let extent = items
+            .par_chunks(super::CHUNK)
+            .map(Extent::of)
+            .reduce(|| Extent::NOTHING, |a, b| a.union(&b));
+        let mut grove = Grove::default();
+        let root = Part::decided(items, 0, extent, 0).grow(0, &mut grove);
+        (root, grove)
     })
 }
 
 /// A root over one leaf per group of triangles, one of all spheres and one of all instances, in the given order.
-pub(super) fn over_kinds(items: &[Item], groups: &[Range<u32>]) -> Option<BuildNode> {
-    let triangles = items.partition_point(|i| i.kind < Kind::Sphere);
-    let spheres = items.partition_point(|i| i.kind < Kind::Instance);
-    let mut row: Vec<BuildNode> = groups
+pub(super) fn over_kinds(items: &[Item], groups: &[Range<u32>]) -> Option<(Child, Grove)> {
+    let first_of = |kind: Kinds| items.partition_point(|i| i.kind().order() < kind.order()) as u32;
+    let (spheres, instances) = (first_of(Kinds::SPHERE), first_of(Kinds::INSTANCE));
+    let row: Vec<Child> = groups
         .iter()
-        .map(|g| g.start as usize..g.end as usize)
-        .chain([triangles..spheres, spheres..items.len()])
+        .cloned()
+        .chain([spheres..instances, instances..items.len() as u32])
         .filter(|range| !range.is_empty())
-        .map(|range| BuildNode {
-            bounds: split::bounds_of(&items[range.clone()]),
+        .map(|range| Child {
+            bounds: Extent::of(&items[range.start as usize..range.end as usize])
+                .bounds
+                .aabb(),
             shape: Shape::Leaf(range),
         })
         .collect();
-    while row.len() > 1 {
-        row = row.chunks(WIDTH).map(over).collect();
-    }
-    row.pop()
+    let mut grove = Grove::default();
+    (!row.is_empty()).then(|| (over(&row, &mut grove), grove))
 }
 
-/// The parent of these nodes.
-fn over(children: &[BuildNode]) -> BuildNode {
+/// The parent of these children, or the only one.
+fn over(children: &[Child], grove: &mut Grove) -> Child {
     if let [only] = children {
         return only.clone();
     }
-    let boxes = children.iter().map(|c| c.bounds);
-    BuildNode {
-        bounds: boxes.fold(Aabb::EMPTY, Aabb::union),
-        shape: Shape::Inner(children.to_vec()),
+    let at = grove.nodes.len();
+    grove.nodes.push(BuildNode::default());
+    let mut each = 1;
+    while each * WIDTH < children.len() {
+        each *= WIDTH;
+    }
+    let mut bounds = Aabb::EMPTY;
+    for (slot, part) in children.chunks(each).enumerate() {
+        let child = over(part, grove);
+        bounds = bounds.union(child.bounds);
+        grove.nodes[at][slot] = Some(child);
+    }
+    Child {
+        bounds,
+        shape: Shape::Node(at as u32),
     }
 }
 
@@ -107,93 +104,114 @@ fn over(children: &[BuildNode]) -> BuildNode {
 struct Part<'a> {
     items: &'a mut [Item],
     /// Index of its first item among all.
-    first: usize,
-    bounds: Aabb,
+    first: u32,
+    extent: Extent,
     /// Where it splits; nothing when it is a leaf.
-    cut: Option<split::Cut>,
+    cut: Option<Cut>,
 }
 
 impl<'a> Part<'a> {
-    fn new(items: &'a mut [Item], first: usize) -> Part<'a> {
-        let bounds = split::bounds_of(items);
+    /// With its cut chosen for a node `depth` inner nodes below the root.
+    fn decided(items: &'a mut [Item], first: u32, extent: Extent, depth: usize) -> Part<'a> {
+        let cut = if depth < SAH_DEPTH {
+            split::choose(items, &extent)
+        } else {
+            split::median(items, &extent)
+        };
         Part {
             items,
             first,
-            bounds,
-            cut: None,
+            extent,
+            cut,
         }
     }
 
-    /// Chooses its cut for a node `depth` inner nodes below the root.
-    fn decide(mut self, depth: usize) -> Part<'a> {
-        self.cut = if depth < SAH_DEPTH {
-            split::choose(self.items, &self.bounds)
-        } else {
-            split::median(self.items)
-        };
-        self
+    /// How much it wants to be split before others: by area, or below [`SAH_DEPTH`] by count. Nothing for a leaf.
+    fn urgency(&self, depth: usize) -> Option<f32> {
+        self.cut.is_some().then(|| {
+            if depth < SAH_DEPTH {
+                self.extent.bounds.half_area()
+            } else {
+                self.items.len() as f32
+            }
+        })
     }
 
-    /// How much it wants to be split before others: by area, or below [`SAH_DEPTH`] by count.
-    fn urgency(&self, depth: usize) -> f32 {
-        if self.cut.is_none() {
-            f32::NEG_INFINITY
-        } else if depth < SAH_DEPTH {
-            split::half_area(&self.bounds)
-        } else {
-            self.items.len() as f32
-        }
-    }
-
-    fn split(self, cut: split::Cut, depth: usize) -> [Part<'a>; 2] {
-        let at = split::partition(self.items, &cut);
-        let (left, right) = self.items.split_at_mut(at);
+    fn split(self, cut: Cut, depth: usize) -> [Part<'a>; 2] {
+        let (at, [left, right]) = partition(self.items, &cut);
+        let (lefts, rights) = self.items.split_at_mut(at);
         [
-            Part::new(left, self.first).decide(depth),
-            Part::new(right, self.first + at).decide(depth),
+            Part::decided(lefts, self.first, left, depth),
+            Part::decided(rights, self.first + at as u32, right, depth),
         ]
     }
 
-    /// Grows the subtree of this decided part; `depth` inner nodes lie above it.
-    fn grow(self, depth: usize) -> BuildNode {
+    /// Grows the subtree of this decided part into the grove; `depth` inner nodes lie above it.
+    fn grow(self, depth: usize, grove: &mut Grove) -> Child {
         let part = if depth == SAH_DEPTH {
-            self.decide(depth)
+            Part::decided(self.items, self.first, self.extent, depth)
         } else {
             self
         };
-        let bounds = part.bounds;
+        let bounds = part.extent.bounds.aabb();
         if part.cut.is_none() {
-            return BuildNode {
+            let range = part.first..part.first + part.items.len() as u32;
+            return Child {
                 bounds,
-                shape: Shape::Leaf(part.first..part.first + part.items.len()),
+                shape: Shape::Leaf(range),
             };
         }
-        let large = part.items.len() >= PARALLEL;
+        let large = part.items.len() >= SUBTREE;
+        let at = grove.nodes.len();
+        grove.nodes.push(BuildNode::default());
         let parts = part.into_children(depth);
-        let grow = |p: Part| p.grow(depth + 1);
-        let children = if large {
-            parts.into_par_iter().map(grow).collect()
+        if large {
+            let below: Vec<(Child, Grove)> = parts
+                .into_par_iter()
+                .flatten()
+                .map(|part| {
+                    let mut below = Grove::default();
+                    (part.grow(depth + 1, &mut below), below)
+                })
+                .collect();
+            for (slot, (mut child, below)) in below.into_iter().enumerate() {
+                if let Shape::Node(_) = child.shape {
+                    child.shape = Shape::Grove(grove.groves.len() as u32);
+                    grove.groves.push(below);
+                }
+                grove.nodes[at][slot] = Some(child);
+            }
         } else {
-            parts.into_iter().map(grow).collect()
-        };
-        BuildNode {
+            for (slot, part) in parts.into_iter().flatten().enumerate() {
+                let child = part.grow(depth + 1, grove);
+                grove.nodes[at][slot] = Some(child);
+            }
+        }
+        Child {
             bounds,
-            shape: Shape::Inner(children),
+            shape: Shape::Node(at as u32),
         }
     }
 
     /// Splits the most urgent part again and again, until there are eight or all are leaves.
-    fn into_children(self, depth: usize) -> Vec<Part<'a>> {
-        let mut parts = vec![self];
-        while parts.len() < WIDTH {
-            let urgency = |i: &usize| parts[*i].urgency(depth);
-            let most = (0..parts.len()).max_by(|a, b| urgency(a).total_cmp(&urgency(b)));
-            let Some((i, cut)) = most.and_then(|i| parts[i].cut.take().map(|cut| (i, cut))) else {
+    fn into_children(self, depth: usize) -> [Option<Part<'a>>; WIDTH] {
+        let mut parts = [const { None }; WIDTH];
+        parts[0] = Some(self);
+        for len in 1..WIDTH {
+            let urgency = |i: usize| Some((i, parts[i].as_ref()?.urgency(depth)?));
+            let most = (0..len)
+                .filter_map(urgency)
+                .max_by(|a, b| a.1.total_cmp(&b.1));
+            if let Some((i, _)) = most
+                && let Some(mut part) = parts[i].take()
+                && let Some(cut) = part.cut.take()
+            {
+                let [left, right] = part.split(cut, depth);
+                parts[i] = Some(left);
+                parts[len] = Some(right);
+            } else {
                 break;
-            };
-            let [left, right] = parts.remove(i).split(cut, depth);
-            parts.insert(i, right);
-            parts.insert(i, left);
+            }
         }
         parts
     }

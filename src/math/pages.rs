@@ -1,0 +1,37 @@
+//! Memory for large arrays on huge pages, where the system has them for the asking.
+//!
+//! A page of 2 MiB instead of 4 KiB makes 512 times fewer page faults while an array is filled, and fewer misses of
+//! the translation buffer when it is read at random.
+
+/// Arrays below this size are left alone: a few huge pages, of which the ends are lost to alignment.
+const WORTHWHILE: usize = 4 * HUGE;
+
+/// Size and alignment of a huge page.
+const HUGE: usize = 2 << 20;
+
+/// An empty vector for `len` elements; a large one lies on huge pages.
+#[must_use]
+pub fn with_capacity<T>(len: usize) -> Vec<T> {
+    let vec = Vec::<T>::with_capacity(len);
+    let bytes = vec.capacity() * size_of::<T>();
+    if bytes >= WORTHWHILE {
+        advise(vec.as_ptr().cast(), bytes);
+    }
+    vec
+}
+
+/// Asks for huge pages inside these bytes. What is refused is not missed.
+#[cfg(target_os = "linux")]
+#[allow(unsafe_code, reason = "the system call")]
+fn advise(start: *const u8, bytes: usize) {
+    let before = start.align_offset(HUGE);
+    let inside = bytes.saturating_sub(before) & !(HUGE - 1);
+    let first = start.wrapping_add(before).cast_mut();
+    // SAFETY: the range is whole pages inside one live allocation, and the advice changes no byte of it.
+    unsafe {
+        libc::madvise(first.cast(), inside, libc::MADV_HUGEPAGE);
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+fn advise(_: *const u8, _: usize) {}
