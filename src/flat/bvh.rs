@@ -12,18 +12,85 @@ pub const MAX_DEPTH: usize = 48;
 /// Entries of a traversal stack: every inner node on a path leaves at most `WIDTH − 1` siblings behind.
 pub const STACK: usize = MAX_DEPTH * (WIDTH - 1) + 1;
 
-/// What a child is, with the number of blocks of a leaf: see [`LinearNode::kind`].
+/// What a node points to: an inner node, or a run of blocks or instances of one kind. One word, so that a traversal stack
+/// is two arrays.
+///
+/// Two bits of kind, four of length less one, 26 of index.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(transparent)]
+pub struct Child(pub u32);
+
+/// The kinds of a [`Child`], in its two highest bits.
 pub mod kind {
-    /// Inner node; `child` is its index. Also the kind of an unused slot, whose box is empty.
+    /// An inner node; the index of a node. Also an unused slot's, with index 0 and an empty box.
     pub const INNER: u32 = 0;
-    /// A run of triangle blocks; the low 30 bits are their number, `child` is the first.
+    /// A run of triangle blocks, from the index on.
     pub const TRIANGLES: u32 = 1 << 30;
-    /// A run of sphere blocks, likewise.
+    /// A run of sphere blocks.
     pub const SPHERES: u32 = 2 << 30;
-    /// A run of instances, likewise; `child` is the first index into [`super::Bvh::instance_order`].
+    /// A run of instances; the index is into [`super::Bvh::instance_order`].
     pub const INSTANCES: u32 = 3 << 30;
     /// The bits that say which.
     pub const MASK: u32 = 3 << 30;
+}
+
+impl Child {
+    /// Bits of the index: 2²⁶ nodes are 16 GiB.
+    const INDEX_BITS: u32 = 26;
+
+    /// Blocks or instances of a leaf at most.
+    pub const MAX_RUN: u32 = 1 << (30 - Child::INDEX_BITS);
+
+    /// An inner node.
+    #[must_use]
+    pub const fn inner(node: u32) -> Child {
+        Child(node)
+    }
+
+    /// A run of `len` blocks, 1 to [`Child::MAX_RUN`].
+    #[must_use]
+    pub const fn run(kind: u32, first: u32, len: u32) -> Child {
+        Child(kind | (len - 1) << Child::INDEX_BITS | first)
+    }
+
+    /// One of [`kind`].
+    #[inline(always)]
+    #[must_use]
+    pub const fn kind(self) -> u32 {
+        self.0 & kind::MASK
+    }
+
+    /// Index of the node, or of the first of the run.
+    #[inline(always)]
+    #[must_use]
+    pub const fn index(self) -> usize {
+        (self.0 & ((1 << Child::INDEX_BITS) - 1)) as usize
+    }
+
+    /// The run without its first; nothing of a run of one.
+    #[inline(always)]
+    #[must_use]
+    pub const fn rest(self) -> Option<Child> {
+        if self.len() == 1 {
+            None
+        } else {
+            Some(Child(self.0 - (1 << Child::INDEX_BITS) + 1))
+        }
+    }
+
+    /// The run's first by itself.
+    #[inline(always)]
+    #[must_use]
+    pub const fn alone(self) -> Child {
+        Child(self.0 & (kind::MASK | ((1 << Child::INDEX_BITS) - 1)))
+    }
+
+    /// Length of the run.
+    #[inline(always)]
+    #[must_use]
+    pub const fn len(self) -> usize {
+        ((self.0 & !kind::MASK) >> Child::INDEX_BITS) as usize + 1
+    }
 }
 
 /// An inner node: the planes of its eight children's boxes in lanes, then what the children are.
@@ -36,10 +103,10 @@ pub struct LinearNode {
     /// `planes[0..3]`: x, y, z of the minima; `planes[3..6]`: of the maxima. So the near plane of axis `a` for a
     /// ray with a negative direction is `planes[a + 3]`.
     pub planes: [[f32; WIDTH]; 6],
-    /// Node index, first block or first instance: see `kind`.
+    /// What the children are, [`Child`]'s words.
     pub child: [u32; WIDTH],
-    /// A [`kind`] with the length of the run.
-    pub kind: [u32; WIDTH],
+    /// Fills the fourth cache line.
+    pub padding: [u32; WIDTH],
 }
 
 const _: () = assert!(size_of::<LinearNode>() == 256);
@@ -56,7 +123,7 @@ impl LinearNode {
             [f32::NEG_INFINITY; WIDTH],
         ],
         child: [0; WIDTH],
-        kind: [kind::INNER; WIDTH],
+        padding: [0; WIDTH],
     };
 
     /// The box of a child.
@@ -75,10 +142,8 @@ impl LinearNode {
 pub struct Bvh {
     /// Inner nodes; a child has a larger index than its parent.
     pub nodes: Vec<LinearNode>,
-    /// `child` of the root.
-    pub root: u32,
-    /// `kind` of the root; `INNER` with no nodes is the empty tree.
-    pub root_kind: u32,
+    /// The root; an inner one where there are no nodes is the empty tree.
+    pub root: Child,
     /// Indices into the scene's instances, in leaf order; empty in a local tree.
     pub instance_order: Vec<u32>,
     /// The box of everything in it; empty for the empty tree.

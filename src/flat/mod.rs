@@ -15,7 +15,7 @@ pub mod spheres;
 pub mod texture;
 pub mod triangles;
 
-pub use bvh::{Bvh, LinearNode};
+pub use bvh::{Bvh, Child, LinearNode};
 pub use camera::{Camera, PixelFilter};
 pub use geometry::{Geometry, Instance, Normals, ObjectId, Shading};
 pub use lights::{LightPlace, LightTriangles, Lights, Punctual};

@@ -9,8 +9,8 @@ use super::BLOCK;
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub struct TriangleBlock {
-    /// `v[vertex][axis][lane]`, scene units or local units of the mesh. Unused lanes repeat the block's first
-    /// triangle's first vertex three times: degenerate, never hit.
+    /// `v[vertex][axis][lane]`, scene units or local units of the mesh. Unused lanes hold NaN,
+    /// which no ray hits.
     pub v: [[[f32; BLOCK]; 3]; 3],
     /// Primitive index of each lane: the triangle's index in authoring order in its geometry. `u32::MAX` in unused
     /// lanes.

@@ -34,11 +34,20 @@ impl Isa {
     #[must_use]
     pub fn available(level: Level) -> Option<Isa> {
         #[cfg(target_arch = "x86_64")]
+        // Every machine with AVX2 so far has the bit instructions as well.
+        let avx2 = || {
+            is_x86_feature_detected!("avx2")
+                && is_x86_feature_detected!("bmi1")
+                && is_x86_feature_detected!("bmi2")
+                && is_x86_feature_detected!("lzcnt")
+                && is_x86_feature_detected!("popcnt")
+        };
+        #[cfg(target_arch = "x86_64")]
         let has = match level {
             Level::Scalar | Level::Sse2 => true,
-            Level::Avx2 => is_x86_feature_detected!("avx2"),
+            Level::Avx2 => avx2(),
             Level::Avx512 => {
-                is_x86_feature_detected!("avx2")
+                avx2()
                     && is_x86_feature_detected!("avx512f")
                     && is_x86_feature_detected!("avx512vl")
                     && is_x86_feature_detected!("avx512dq")

@@ -12,7 +12,7 @@ use super::item::{Item, Kinds};
 use super::split::{self, NODE_COST};
 use super::tree::{BuildNode, Child, Grove, Shape};
 use super::{Built, CHUNK, Primitives, SPHERES, SphereItem, sphere_bounds};
-use crate::flat::bvh::{WIDTH, kind};
+use crate::flat::bvh::{Child as To, WIDTH, kind};
 use crate::flat::{BLOCK, Bvh, LinearNode, SphereBlock, TriangleBlock, Triangles};
 use crate::math::{Aabb, Vec3, pages};
 use rayon::prelude::*;
@@ -30,7 +30,7 @@ pub(super) fn linearize(p: &Primitives, items: &[Item], root: Option<(Child, Gro
     };
     let (root, grove) = root.unwrap_or((nothing, Grove::default()));
     let mut order = Order::new(items, half_area(&root.bounds));
-    let (child, kind) = order.all(&grove, &root);
+    let to = order.all(&grove, &root);
     let place: Vec<AtomicU32> = (0..p.triangles.len()).map(|_| AtomicU32::new(0)).collect();
     let mut blocks = pages::with_capacity(order.triangles.len());
     let ranges = order.triangles.par_iter().enumerate();
@@ -48,8 +48,7 @@ pub(super) fn linearize(p: &Primitives, items: &[Item], root: Option<(Child, Gro
     Built {
         bvh: Bvh {
             nodes,
-            root: child,
-            root_kind: kind,
+            root: to,
             instance_order: order
                 .instances
                 .iter()
@@ -98,8 +97,8 @@ struct Placed<'a> {
     node: &'a BuildNode,
     /// Inner nodes on the path that ends here.
     depth: u32,
-    /// `child` and `kind` of every child.
-    to: [(u32, u32); WIDTH],
+    /// Where every child went.
+    to: [To; WIDTH],
 }
 
 impl<'a> Order<'a> {
@@ -116,8 +115,8 @@ impl<'a> Order<'a> {
         }
     }
 
-    /// Places everything below the root; returns its `child` and `kind`.
-    fn all(&mut self, grove: &'a Grove, root: &'a Child) -> (u32, u32) {
+    /// Places everything below the root; returns where.
+    fn all(&mut self, grove: &'a Grove, root: &'a Child) -> To {
         let to = self.child(grove, root, 1);
         let mut next = 0;
         while next < self.nodes.len() && self.nodes.len() < TOP {
@@ -143,8 +142,8 @@ impl<'a> Order<'a> {
         first..self.nodes.len()
     }
 
-    /// Places a child; returns its `child` and `kind`.
-    fn child(&mut self, grove: &'a Grove, child: &'a Child, depth: u32) -> (u32, u32) {
+    /// Places a child; returns where.
+    fn child(&mut self, grove: &'a Grove, child: &'a Child, depth: u32) -> To {
         let share = if self.area > 0.0 {
             half_area(&child.bounds) / self.area
         } else {
@@ -166,20 +165,20 @@ impl<'a> Order<'a> {
             grove,
             node: &grove.nodes[index],
             depth,
-            to: Default::default(),
+            to: [To::inner(0); WIDTH],
         });
-        (self.nodes.len() as u32 - 1, kind::INNER)
+        To::inner(self.nodes.len() as u32 - 1)
     }
 
-    /// Places the blocks of a leaf; returns its `child` and `kind`.
-    fn leaf(&mut self, range: Range<u32>) -> (u32, u32) {
+    /// Places the blocks of a leaf; returns where.
+    fn leaf(&mut self, range: Range<u32>) -> To {
         let what = self.items.get(range.start as usize).map(Item::kind);
         let (list, lanes, tag) = match what {
-            None => return (0, kind::INNER),
+            None => return To::inner(0),
             Some(Kinds::INSTANCE) => {
                 let first = self.instances.len() as u32;
                 self.instances.extend(range.clone());
-                return (first, kind::INSTANCES | range.len() as u32);
+                return To::run(kind::INSTANCES, first, range.len() as u32);
             }
             Some(Kinds::SPHERE) => (&mut self.spheres, SPHERES, kind::SPHERES),
             Some(_) => (&mut self.triangles, BLOCK, kind::TRIANGLES),
@@ -187,7 +186,7 @@ impl<'a> Order<'a> {
         let first = list.len() as u32;
         let starts = range.clone().step_by(lanes);
         list.extend(starts.map(|at| at..range.end.min(at + lanes as u32)));
-        (first, tag | (list.len() as u32 - first))
+        To::run(tag, first, list.len() as u32 - first)
     }
 }
 
@@ -199,7 +198,7 @@ impl Placed<'_> {
                 out.planes[axis][slot] = child.bounds.min[axis];
                 out.planes[axis + 3][slot] = child.bounds.max[axis];
             }
-            (out.child[slot], out.kind[slot]) = self.to[slot];
+            out.child[slot] = self.to[slot].0;
         }
         out
     }
@@ -207,7 +206,6 @@ impl Placed<'_> {
 
 /// The triangle block of these items, whose places it notes.
 fn triangle_block(p: &Primitives, items: &[Item], at: usize, place: &[AtomicU32]) -> TriangleBlock {
-    let pad = p.triangles[items[0].index() as usize][0];
     let mut block = TriangleBlock {
         v: [[[0.0; BLOCK]; 3]; 3],
         prim: [u32::MAX; BLOCK],
@@ -220,7 +218,7 @@ fn triangle_block(p: &Primitives, items: &[Item], at: usize, place: &[AtomicU32]
                 place[prim].store((BLOCK * at + lane) as u32, Ordering::Relaxed);
                 p.triangles[prim]
             }
-            None => [pad; 3],
+            None => [Vec3::NAN; 3],
         };
         for (k, vertex) in vertices.iter().map(Vec3::to_array).enumerate() {
             for axis in 0..3 {

@@ -5,6 +5,7 @@ use super::item::{Extent, Item, Kinds};
 use super::partition::partition;
 use super::split::{self, Cut};
 use crate::flat::bvh::{MAX_DEPTH, WIDTH};
+use crate::flat::{self, BLOCK};
 use crate::math::Aabb;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -66,15 +67,26 @@ pub(super) fn over_kinds(items: &[Item], groups: &[Range<u32>]) -> Option<(Child
         .cloned()
         .chain([spheres..instances, instances..items.len() as u32])
         .filter(|range| !range.is_empty())
-        .map(|range| Child {
-            bounds: Extent::of(&items[range.start as usize..range.end as usize])
-                .bounds
-                .aabb(),
-            shape: Shape::Leaf(range),
-        })
+        .flat_map(|range| runs(items, range))
         .collect();
     let mut grove = Grove::default();
     (!row.is_empty()).then(|| (over(&row, &mut grove), grove))
+}
+
+/// Leaves of as many items as a run holds, all of them with the box of the whole range.
+fn runs(items: &[Item], range: Range<u32>) -> impl Iterator<Item = Child> {
+    let row = &items[range.start as usize..range.end as usize];
+    let bounds = Extent::of(row).bounds.aabb();
+    let lanes = if row[0].kind() == Kinds::INSTANCE {
+        1
+    } else {
+        BLOCK as u32
+    };
+    let most = lanes * flat::Child::MAX_RUN;
+    range.clone().step_by(most as usize).map(move |at| Child {
+        bounds,
+        shape: Shape::Leaf(at..range.end.min(at + most)),
+    })
 }
 
 /// The parent of these children, or the only one.

@@ -1,7 +1,7 @@
 //! What a built tree promises, checked: for tests.
 
 use super::{Built, Primitives, sphere_bounds, triangle_bounds};
-use crate::flat::bvh::{MAX_DEPTH, WIDTH, kind};
+use crate::flat::bvh::{Child, MAX_DEPTH, WIDTH, kind};
 use crate::math::Aabb;
 
 /// Checks that every box contains its children and its primitives, that every primitive is there once, that children
@@ -23,7 +23,7 @@ pub fn validate(p: &Primitives, built: &Built) -> Result<(), String> {
     let empty = p.triangles.is_empty() && p.spheres.is_empty() && p.instances.is_empty();
     if !empty {
         let bvh = &built.bvh;
-        walk.child(bvh.root, bvh.root_kind, &bvh.bounds, 0)?;
+        walk.child(bvh.root, &bvh.bounds, 0)?;
     }
     for (name, seen) in ["triangle", "sphere", "instance"].iter().zip(&walk.seen) {
         if let Some(i) = seen.iter().position(|&n| n != 1) {
@@ -48,10 +48,10 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    fn child(&mut self, child: u32, tagged: u32, bounds: &Aabb, depth: u32) -> Result<(), String> {
-        let run = child as usize..(child + (tagged & !kind::MASK)) as usize;
-        match tagged & kind::MASK {
-            kind::INNER => self.inner(child as usize, bounds, depth),
+    fn child(&mut self, child: Child, bounds: &Aabb, depth: u32) -> Result<(), String> {
+        let run = child.index()..child.index() + child.len();
+        match child.kind() {
+            kind::INNER => self.inner(child.index(), bounds, depth),
             kind::TRIANGLES => run
                 .into_iter()
                 .try_for_each(|b| self.triangle_block(b, bounds)),
@@ -70,16 +70,16 @@ impl Walk<'_> {
         self.deepest = self.deepest.max(depth + 1);
         let node = self.built.bvh.nodes[at];
         for slot in 0..WIDTH {
-            let tagged = node.kind[slot];
-            if tagged == kind::INNER && node.child[slot] == 0 {
+            let child = Child(node.child[slot]);
+            if child == Child::inner(0) {
                 continue;
             }
-            if tagged == kind::INNER && node.child[slot] as usize <= at {
-                return Err(format!("node {at} has child {}", node.child[slot]));
+            if child.kind() == kind::INNER && child.index() <= at {
+                return Err(format!("node {at} has child {}", child.index()));
             }
             let own = node.child_box(slot);
             inside(bounds, &own, "child box")?;
-            self.child(node.child[slot], tagged, &own, depth + 1)?;
+            self.child(child, &own, depth + 1)?;
         }
         Ok(())
     }

@@ -141,6 +141,26 @@ impl Lanes for F32x8 {
         }
     }
     #[inline(always)]
+    fn sort_falling(
+        keys: &[f32; 8],
+        chosen: u32,
+        items: &[u32; 8],
+        out: &mut [u32; 8],
+        bounds: &mut [f32; 8],
+    ) -> usize {
+        // SAFETY: the machine has AVX2, see the module; the arrays have eight elements.
+        unsafe { sort_falling(keys, chosen, items, out, bounds) }
+    }
+    #[inline(always)]
+    fn prefetch(address: *const u8, len: usize) {
+        let mut at = 0;
+        while at < len {
+            // SAFETY: the machine has SSE, and a prefetch of any address does not fault.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(address.wrapping_add(at).cast()) };
+            at += 64;
+        }
+    }
+    #[inline(always)]
     fn narrow(wide: F64x8) -> F32x8 {
         // SAFETY: the machine has AVX, see the module.
         unsafe {
@@ -227,5 +247,150 @@ impl WideLanes for F64x8 {
             let high = _mm256_cmp_pd::<_CMP_GE_OQ>(self.1, zero);
             _mm256_movemask_pd(_mm256_or_pd(low, high)) != 0
         }
+    }
+}
+
+/// For every set of eight lanes: its members, then one that is not, again and again.
+static MEMBERS_FIRST: [[u8; 8]; 256] = members_first();
+
+const fn members_first() -> [[u8; 8]; 256] {
+    let mut table = [[0; 8]; 256];
+    let mut set = 0;
+    while set < 256 {
+        let [mut at, mut lane] = [0, 0];
+        while lane < 8 {
+            if set >> lane & 1 == 1 {
+                table[set][at] = lane as u8;
+                at += 1;
+            }
+            lane += 1;
+        }
+        while at < 8 {
+            table[set][at] = (set as u32).trailing_ones() as u8;
+            at += 1;
+        }
+        set += 1;
+    }
+    table
+}
+
+/// The larger of a lane and its partner goes to the lane whose bit in `SMALLER` is clear.
+macro_rules! compare {
+    ($max:ident, $min:ident, $blend:ident, $smaller:literal, $keys:ident, $partners:expr) => {{
+        let partners = $partners;
+        $keys = $blend::<$smaller>($max($keys, partners), $min($keys, partners));
+    }};
+}
+
+/// The bits of keys that are not negative order as integers. The lowest three carry the lane, so that what comes out of a
+/// sorting network (Batcher 1968) says where it was.
+///
+/// # Safety
+/// The machine has AVX2.
+#[inline(always)]
+unsafe fn sort_falling(
+    keys: &[f32; 8],
+    chosen: u32,
+    items: &[u32; 8],
+    out: &mut [u32; 8],
+    bounds: &mut [f32; 8],
+) -> usize {
+    // SAFETY: the machine has AVX2; all arrays have eight elements, and the table's rows eight bytes.
+    unsafe {
+        let len = chosen.count_ones() as usize;
+        let keys = _mm256_loadu_si256(keys.as_ptr().cast());
+        let items = _mm256_loadu_si256(items.as_ptr().cast());
+        let [out, bounds]: [*mut __m256i; 2] =
+            [out.as_mut_ptr().cast(), bounds.as_mut_ptr().cast()];
+        if len <= 4 {
+            // Four lanes suffice, and the table's fifth and following are not looked at.
+            let row = &MEMBERS_FIRST[(chosen & 255) as usize];
+            let from = _mm256_cvtepu8_epi32(_mm_loadl_epi64(row.as_ptr().cast()));
+            let near = _mm256_castsi256_si128(_mm256_permutevar8x32_epi32(keys, from));
+            let clear = _mm_set1_epi32(-8);
+            let mut k = _mm_or_si128(_mm_and_si128(near, clear), _mm256_castsi256_si128(from));
+            compare!(
+                _mm_max_epi32,
+                _mm_min_epi32,
+                _mm_blend_epi32,
+                0b1010,
+                k,
+                _mm_shuffle_epi32::<0xb1>(k)
+            );
+            compare!(
+                _mm_max_epi32,
+                _mm_min_epi32,
+                _mm_blend_epi32,
+                0b1100,
+                k,
+                _mm_shuffle_epi32::<0x1b>(k)
+            );
+            compare!(
+                _mm_max_epi32,
+                _mm_min_epi32,
+                _mm_blend_epi32,
+                0b1010,
+                k,
+                _mm_shuffle_epi32::<0xb1>(k)
+            );
+            let sorted = _mm256_permutevar8x32_epi32(items, _mm256_castsi128_si256(k));
+            _mm_storeu_si128(out.cast(), _mm256_castsi256_si128(sorted));
+            _mm_storeu_si128(bounds.cast(), _mm_and_si128(k, clear));
+            return len;
+        }
+        let lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+        let clear = _mm256_set1_epi32(-8);
+        let mut k = _mm256_or_si256(_mm256_and_si256(keys, clear), lanes);
+        compare!(
+            _mm256_max_epi32,
+            _mm256_min_epi32,
+            _mm256_blend_epi32,
+            0x66,
+            k,
+            _mm256_shuffle_epi32::<0xb1>(k)
+        );
+        compare!(
+            _mm256_max_epi32,
+            _mm256_min_epi32,
+            _mm256_blend_epi32,
+            0x3c,
+            k,
+            _mm256_shuffle_epi32::<0x4e>(k)
+        );
+        compare!(
+            _mm256_max_epi32,
+            _mm256_min_epi32,
+            _mm256_blend_epi32,
+            0x5a,
+            k,
+            _mm256_shuffle_epi32::<0xb1>(k)
+        );
+        compare!(
+            _mm256_max_epi32,
+            _mm256_min_epi32,
+            _mm256_blend_epi32,
+            0xf0,
+            k,
+            _mm256_permute2x128_si256::<1>(k, k)
+        );
+        compare!(
+            _mm256_max_epi32,
+            _mm256_min_epi32,
+            _mm256_blend_epi32,
+            0xcc,
+            k,
+            _mm256_shuffle_epi32::<0x4e>(k)
+        );
+        compare!(
+            _mm256_max_epi32,
+            _mm256_min_epi32,
+            _mm256_blend_epi32,
+            0xaa,
+            k,
+            _mm256_shuffle_epi32::<0xb1>(k)
+        );
+        _mm256_storeu_si256(out, _mm256_permutevar8x32_epi32(items, k));
+        _mm256_storeu_si256(bounds, _mm256_and_si256(k, clear));
+        len
     }
 }

@@ -9,7 +9,8 @@
 //! [`avx2`] or [`avx512`] exists only inside an entry that a [`crate::trace::Isa`] of that level guards**, which is the proof
 //! that the machine has the instructions. The module is private to the crate for that reason.
 //!
-//! Deliberately absent: integers, shuffles, reductions, fused and approximate operations.
+//! Deliberately absent: integers, shuffles (but for the one order that traversal needs), reductions, fused and
+//! approximate operations.
 
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod avx2;
@@ -62,6 +63,39 @@ pub(crate) trait Lanes:
     fn widen(self) -> Self::Wide;
     /// Rounded to nearest, ties to even.
     fn narrow(wide: Self::Wide) -> Self;
+
+    /// Writes the elements of `items` whose bits are set in `chosen` to the front of `out`, by falling `keys`, and lower
+    /// bounds of their keys, at most seven units in the last place away, to the front of `bounds`; returns their number.
+    /// What follows in both is overwritten with anything. Keys that are chosen are not negative, the others are.
+    #[inline(always)]
+    fn sort_falling(
+        keys: &[f32; 8],
+        chosen: u32,
+        items: &[u32; 8],
+        out: &mut [u32; 8],
+        bounds: &mut [f32; 8],
+    ) -> usize {
+        let mut left = chosen;
+        let mut len = 0;
+        while left != 0 {
+            let lane = (left.trailing_zeros() & 7) as usize;
+            left &= left - 1;
+            let mut at = len & 7;
+            while at > 0 && bounds[at - 1] < keys[lane] {
+                bounds[at] = bounds[at - 1];
+                out[at] = out[at - 1];
+                at -= 1;
+            }
+            bounds[at] = keys[lane];
+            out[at] = items[lane];
+            len += 1;
+        }
+        len
+    }
+
+    /// Asks for the cache lines of `len` bytes from an address on, which need not be anything's.
+    #[inline(always)]
+    fn prefetch(_address: *const u8, _len: usize) {}
 }
 
 /// Lanes of f64.

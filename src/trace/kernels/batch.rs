@@ -4,18 +4,18 @@
 use super::bound;
 use super::ray::WalkRay;
 use super::sphere::WideRay;
-use super::walk::{Best, LocalTrees, NoInstances, Stack, Tree, walk};
-use crate::flat::bvh::STACK;
+use super::stream::{self, Scratch, Sink};
+use super::walk::{Best, EMPTY_STACK, LocalTrees, NoInstances, Tree};
 use crate::flat::{BLOCK, FlatScene, Spheres};
 use crate::math::lanes::{Lanes, WideLanes};
 use crate::trace::{Hits, Rays};
 
 /// The widest lanes of all.
-const MOST_LANES: usize = 16;
+pub(super) const MOST_LANES: usize = 16;
 
 /// The elements from `at` on; zeros beyond the end, with which no ray hits anything.
 #[inline(always)]
-fn load<L: Lanes>(from: &[f32], at: usize) -> L {
+pub(super) fn load<L: Lanes>(from: &[f32], at: usize) -> L {
     if at + L::N <= from.len() {
         return L::load(&from[at..]);
     }
@@ -40,7 +40,7 @@ fn store<L: Lanes>(lanes: L, to: &mut [f32], at: usize) {
 }
 
 #[inline(always)]
-fn load3<L: Lanes>(from: &[Vec<f32>; 3], at: usize) -> [L; 3] {
+pub(super) fn load3<L: Lanes>(from: &[Vec<f32>; 3], at: usize) -> [L; 3] {
     [load(&from[0], at), load(&from[1], at), load(&from[2], at)]
 }
 
@@ -162,33 +162,12 @@ pub(super) fn tree_closest<L: Lanes, const T: bool, const S: bool, const I: bool
     scene: &FlatScene,
     rays: &Rays,
     hits: &mut Hits,
+    scratch: &mut Scratch,
 ) {
-    let [mut stack, mut local_stack] = [[(0, 0, 0.0); STACK]; 2];
-    let tree = world(scene);
-    for i in 0..rays.len() {
-        let origin = [rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]];
-        let dir = [rays.dir[0][i], rays.dir[1][i], rays.dir[2][i]];
-        let Some(ray) = WalkRay::<L>::new(origin, dir) else {
-            continue;
-        };
-        let mut best = Best::below(hits.t[i]);
-        best.prim = hits.prim[i];
-        let before = best.prim;
-        walk_world::<L, T, S, I, false>(
-            scene,
-            &tree,
-            &ray,
-            [&mut stack, &mut local_stack],
-            &mut best,
-        );
-        if best.prim != before {
-            hits.t[i] = best.t;
-            hits.u[i] = best.u;
-            hits.v[i] = best.v;
-            hits.prim[i] = best.prim;
-            hits.instance[i] = best.instance;
-            hits.err[i] = bound::hit_error(scene, [origin, dir], &best);
-        }
+    let mut sink = Closest { scene, rays, hits };
+    walk_world::<L, _, T, S, I, false>(scene, rays, &mut sink, scratch);
+    if T {
+        bound::world_errors::<L>(&scene.world.triangles, hits);
     }
 }
 
@@ -198,56 +177,87 @@ pub(super) fn tree_occluded<L: Lanes, const T: bool, const S: bool, const I: boo
     scene: &FlatScene,
     rays: &Rays,
     out: &mut [bool],
+    scratch: &mut Scratch,
 ) {
-    let [mut stack, mut local_stack] = [[(0, 0, 0.0); STACK]; 2];
-    let tree = world(scene);
-    for i in 0..rays.len() {
-        // A limit of NaN is one below which nothing lies.
-        let counts = rays.t_max[i] > 0.0;
-        if out[i] || !counts {
-            continue;
-        }
-        let origin = [rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]];
-        let dir = [rays.dir[0][i], rays.dir[1][i], rays.dir[2][i]];
-        let Some(ray) = WalkRay::<L>::new(origin, dir) else {
-            continue;
-        };
-        out[i] = walk_world::<L, T, S, I, true>(
-            scene,
-            &tree,
-            &ray,
-            [&mut stack, &mut local_stack],
-            &mut Best::below(rays.t_max[i]),
-        );
-    }
+    let mut sink = Occluded { rays, out };
+    walk_world::<L, _, T, S, I, true>(scene, rays, &mut sink, scratch);
 }
 
 #[inline(always)]
-fn world(scene: &FlatScene) -> Tree<'_> {
-    Tree {
+fn walk_world<L: Lanes, R: Sink, const T: bool, const S: bool, const I: bool, const ANY: bool>(
+    scene: &FlatScene,
+    rays: &Rays,
+    sink: &mut R,
+    scratch: &mut Scratch,
+) {
+    let tree = Tree {
         bvh: &scene.world.bvh,
         triangles: &scene.world.triangles.blocks,
         spheres: &scene.spheres.blocks,
         instance: Hits::WORLD,
         floor: 0.0,
-    }
-}
-
-#[inline(always)]
-fn walk_world<L: Lanes, const T: bool, const S: bool, const I: bool, const ANY: bool>(
-    scene: &FlatScene,
-    tree: &Tree,
-    ray: &WalkRay<L>,
-    [stack, local_stack]: [&mut Stack; 2],
-    best: &mut Best,
-) -> bool {
+    };
     if I {
         let mut instances = LocalTrees {
             scene,
-            stack: local_stack,
+            stack: &mut EMPTY_STACK.clone(),
         };
-        walk::<L, _, T, S, ANY>(tree, ray, &mut instances, stack, best)
+        stream::walk_all::<L, _, R, T, S, ANY>(&tree, rays, sink, &mut instances, scratch);
     } else {
-        walk::<L, _, T, S, ANY>(tree, ray, &mut NoInstances, stack, best)
+        stream::walk_all::<L, _, R, T, S, ANY>(&tree, rays, sink, &mut NoInstances, scratch);
+    }
+}
+
+/// Rays that want their closest hit.
+struct Closest<'a> {
+    scene: &'a FlatScene,
+    rays: &'a Rays,
+    hits: &'a mut Hits,
+}
+
+impl Sink for Closest<'_> {
+    #[inline(always)]
+    fn best(&self, i: usize) -> Option<Best> {
+        let mut best = Best::below(self.hits.t[i]);
+        best.prim = self.hits.prim[i];
+        Some(best)
+    }
+
+    #[inline(always)]
+    fn done(&mut self, i: usize, best: &Best) {
+        let hits = &mut *self.hits;
+        if best.prim != hits.prim[i] {
+            hits.t[i] = best.t;
+            hits.u[i] = best.u;
+            hits.v[i] = best.v;
+            hits.prim[i] = best.prim;
+            hits.instance[i] = best.instance;
+            // Those of triangles of the world are bounded together, afterwards.
+            if best.prim & Spheres::TAG != 0 || best.instance != Hits::WORLD {
+                let [o, d] = [&self.rays.origin, &self.rays.dir];
+                let ray = [[o[0][i], o[1][i], o[2][i]], [d[0][i], d[1][i], d[2][i]]];
+                hits.err[i] = bound::hit_error(self.scene, ray, best);
+            }
+        }
+    }
+}
+
+/// Rays that want to know whether they are blocked.
+struct Occluded<'a> {
+    rays: &'a Rays,
+    out: &'a mut [bool],
+}
+
+impl Sink for Occluded<'_> {
+    #[inline(always)]
+    fn best(&self, i: usize) -> Option<Best> {
+        // A limit of NaN is one below which nothing lies.
+        let limit = self.rays.t_max[i];
+        (limit > 0.0 && !self.out[i]).then(|| Best::below(limit))
+    }
+
+    #[inline(always)]
+    fn done(&mut self, i: usize, best: &Best) {
+        self.out[i] = best.prim != Hits::NONE;
     }
 }

@@ -1,9 +1,10 @@
 //! `Hits::err`: how far, along the geometric normal, the position that the surface stage computes may be from the surface,
 //! as the next ray's test sees it. The positions are those of [`crate::trace::spawn`].
 
+use super::batch::{MOST_LANES, load};
 use super::walk::Best;
-use crate::flat::{FlatScene, Instance, Spheres};
-use crate::math::lanes::Lanes;
+use crate::flat::{BLOCK, FlatScene, Instance, Spheres, Triangles};
+use crate::math::lanes::{Lanes, WideLanes};
 use crate::trace::Hits;
 use crate::trace::spawn::{
     gamma, instance_normal, instance_point, triangle_normal, triangle_point, triangle_vertices,
@@ -53,7 +54,7 @@ pub(super) fn sphere_error<L: Lanes>(
     err + L::splat(WIDE) * size
 }
 
-/// The bound for any hit; called once per ray, for the hit that stands.
+/// The bound for a hit on a sphere or an instance; called once per ray, for the hit that stands.
 #[inline(always)]
 pub(super) fn hit_error(scene: &FlatScene, ray: [[f32; 3]; 2], hit: &Best) -> f32 {
     if hit.prim & Spheres::TAG != 0 {
@@ -62,15 +63,73 @@ pub(super) fn hit_error(scene: &FlatScene, ray: [[f32; 3]; 2], hit: &Best) -> f3
         let center = [x as f32, y as f32, z as f32];
         return sphere_error(ray, hit.t, center, scene.spheres.radius[i] as f32);
     }
-    if hit.instance == Hits::WORLD {
-        let v = triangle_vertices(&scene.world.triangles, hit.prim);
-        return along(triangle_normal(v), triangle_error(v, hit.u, hit.v));
-    }
     let instance = &scene.instances[hit.instance as usize];
     let local = &scene.local[instance.geometry as usize];
     let v = triangle_vertices(&local.triangles, hit.prim);
     let normal = instance_normal(instance, triangle_normal(v));
     along(normal, instance_error(instance, v, hit.u, hit.v))
+}
+
+/// The bounds of all hits on triangles of the world, in lanes: (Σ |Nᵢ| Eᵢ) / |N| with the normal N in f64, since a sliver's
+/// cross product cancels; 0 for a triangle without area.
+#[inline(always)]
+pub(super) fn world_errors<L: Lanes>(triangles: &Triangles, hits: &mut Hits) {
+    let mut at = 0;
+    while at < hits.prim.len() {
+        let mut v = [[[0.0; MOST_LANES]; 3]; 3];
+        let rest = hits.prim.len() - at;
+        let lanes = if rest < L::N { rest } else { L::N };
+        let mut found = 0;
+        for lane in 0..lanes {
+            let (prim, instance) = (hits.prim[at + lane], hits.instance[at + lane]);
+            // A miss is tagged, too.
+            if prim & Spheres::TAG != 0 || instance != Hits::WORLD {
+                continue;
+            }
+            found |= 1 << lane;
+            let place = triangles.place[prim as usize] as usize;
+            let block = &triangles.blocks[place / BLOCK];
+            for (to, from) in v.iter_mut().zip(&block.v) {
+                for axis in 0..3 {
+                    to[axis][lane] = from[axis][place % BLOCK];
+                }
+            }
+        }
+        if found != 0 {
+            let [b1, b2]: [L; 2] = [load(&hits.u, at), load(&hits.v, at)];
+            let mut err = [0.0; MOST_LANES];
+            world_error(&v, b1, b2).store(&mut err);
+            for lane in 0..lanes {
+                if found >> lane & 1 == 1 {
+                    hits.err[at + lane] = err[lane];
+                }
+            }
+        }
+        at += L::N;
+    }
+}
+
+#[inline(always)]
+fn world_error<L: Lanes>(v: &[[[f32; MOST_LANES]; 3]; 3], b1: L, b2: L) -> L {
+    let b0 = L::splat(1.0) - b1 - b2;
+    let wide = |k: usize, axis: usize| L::load(&v[k][axis]).widen();
+    let edge = |k: usize, axis: usize| wide(k, axis) - wide(0, axis);
+    let (ax, ay, az) = (edge(1, 0), edge(1, 1), edge(1, 2));
+    let (bx, by, bz) = (edge(2, 0), edge(2, 1), edge(2, 2));
+    let normal = [ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx];
+    let one = L::Wide::splat(1.0);
+    let mut sum = L::Wide::splat(0.0);
+    let mut square = sum;
+    for axis in 0..3 {
+        let terms = (b0 * L::load(&v[0][axis])).abs()
+            + (b1 * L::load(&v[1][axis])).abs()
+            + (b2 * L::load(&v[2][axis])).abs();
+        let error = L::splat(gamma(7)) * terms;
+        sum = sum + normal[axis].copysign(one) * error.widen();
+        square = square + normal[axis] * normal[axis];
+    }
+    let length = square.sqrt().positive_or(L::Wide::splat(f64::INFINITY));
+    L::narrow(sum / length) * L::splat(1.0 + f32::EPSILON)
 }
 
 /// Σ |nᵢ| Eᵢ.

@@ -6,11 +6,13 @@
 )]
 
 use super::batch;
+use super::stream::Scratch;
 use crate::flat::{FlatScene, Spheres};
 use crate::math::lanes::portable;
 #[cfg(target_arch = "x86_64")]
 use crate::math::lanes::{avx2 as avx2_lanes, avx512 as avx512_lanes};
 use crate::trace::{Hits, Rays};
+use std::cell::RefCell;
 
 /// A module of entries: lanes for rays against looped spheres, lanes for children and primitives in the tree, features.
 macro_rules! entries {
@@ -36,8 +38,9 @@ macro_rules! entries {
                 scene: &FlatScene,
                 rays: &Rays,
                 hits: &mut Hits,
+                scratch: &mut Scratch,
             ) {
-                batch::tree_closest::<$tree, T, S, I>(scene, rays, hits);
+                batch::tree_closest::<$tree, T, S, I>(scene, rays, hits, scratch);
             }
 
             $(#[target_feature(enable = $features)])?
@@ -46,8 +49,9 @@ macro_rules! entries {
                 scene: &FlatScene,
                 rays: &Rays,
                 out: &mut [bool],
+                scratch: &mut Scratch,
             ) {
-                batch::tree_occluded::<$tree, T, S, I>(scene, rays, out);
+                batch::tree_occluded::<$tree, T, S, I>(scene, rays, out, scratch);
             }
         }
     };
@@ -56,13 +60,18 @@ macro_rules! entries {
 entries!(scalar, f32, f32);
 entries!(sse2, portable::F32x8, portable::F32x8);
 #[cfg(target_arch = "x86_64")]
-entries!(avx2, avx2_lanes::F32x8, avx2_lanes::F32x8, "avx2");
+entries!(
+    avx2,
+    avx2_lanes::F32x8,
+    avx2_lanes::F32x8,
+    "avx2,bmi1,bmi2,lzcnt,popcnt"
+);
 #[cfg(target_arch = "x86_64")]
 entries!(
     avx512,
     avx512_lanes::F32x16,
     avx2_lanes::F32x8,
-    "avx2,avx512f,avx512vl,avx512dq,avx512bw"
+    "avx2,bmi1,bmi2,lzcnt,popcnt,avx512f,avx512vl,avx512dq,avx512bw"
 );
 
 /// Calls an entry of the level of an [`Isa`](crate::trace::Isa).
@@ -97,6 +106,11 @@ macro_rules! on_tree {
     };
 }
 
+thread_local! {
+    /// Of this thread's walks.
+    static SCRATCH: RefCell<Scratch> = RefCell::default();
+}
+
 /// Closest hits with the looped spheres; `hits.t` are limits.
 pub(super) fn looped_closest(isa: crate::trace::Isa, s: &Spheres, rays: &Rays, hits: &mut Hits) {
     on_isa!(isa, looped_closest(s, rays, hits));
@@ -114,7 +128,9 @@ pub(super) fn tree_closest(
     rays: &Rays,
     hits: &mut Hits,
 ) {
-    on_tree!(holds(scene), isa, tree_closest(scene, rays, hits));
+    SCRATCH.with_borrow_mut(|scratch| {
+        on_tree!(holds(scene), isa, tree_closest(scene, rays, hits, scratch))
+    });
 }
 
 /// Occlusion by the tree.
@@ -124,7 +140,9 @@ pub(super) fn tree_occluded(
     rays: &Rays,
     out: &mut [bool],
 ) {
-    on_tree!(holds(scene), isa, tree_occluded(scene, rays, out));
+    SCRATCH.with_borrow_mut(|scratch| {
+        on_tree!(holds(scene), isa, tree_occluded(scene, rays, out, scratch))
+    });
 }
 
 /// What the world's tree holds. From its buffers rather than from `Needs`, which also counts triangles of instances.

@@ -20,6 +20,7 @@ mod bound;
 mod entries;
 mod ray;
 mod sphere;
+mod stream;
 mod triangle;
 mod walk;
 

@@ -3,30 +3,140 @@
 use crate::flat::BLOCK;
 use crate::math::lanes::Lanes;
 
-/// Factors that widen a slab interval by three units in the last place at each end.
+/// Factors of 1 / d that widen a slab interval by four units in the last place at each end.
 ///
-/// A plane's parameter is `fl(fl(plane − o) · fl(1 / d))`: three roundings, (1 + ε)³ with ε = 2⁻²⁴, so less than
-/// two units of 2⁻²³ away from the exact one; a computed t and the rounding of the product here take the third
-/// (Ize, *Robust BVH Ray Traversal*, 2013, widens the far end alone by two; both ends are needed for a hit's t to
-/// lie inside the interval).
-const NEAR: f32 = 1.0 - 3.0 * f32::EPSILON;
-const FAR: f32 = 1.0 + 3.0 * f32::EPSILON;
+/// A plane's parameter is `fl(fl(plane − o) · fl(fl(1 / d) · factor))`: four roundings, (1 + ε)⁴ with ε = 2⁻²⁴, so at
+/// most two units of 2⁻²³ away from the exact one; a computed t takes the third, and the fourth is slack (Ize, *Robust BVH
+/// Ray Traversal*, 2013, widens the far end alone by two; both ends are needed for a hit's t to lie inside the interval).
+const NEAR: f32 = 1.0 - 4.0 * f32::EPSILON;
+const FAR: f32 = 1.0 + 4.0 * f32::EPSILON;
+
+/// One of the six planes of a node's boxes, by where its eight lanes begin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub(super) enum Plane {
+    MinX = 0,
+    MinY = BLOCK as u8,
+    MinZ = 2 * BLOCK as u8,
+    MaxX = 3 * BLOCK as u8,
+    MaxY = 4 * BLOCK as u8,
+    MaxZ = 5 * BLOCK as u8,
+}
+
+/// One plane of `L::N` boxes from lane `at` on.
+#[inline(always)]
+fn plane<L: Lanes>(planes: &[[f32; BLOCK]; 6], plane: Plane, at: usize) -> L {
+    L::load(&planes.as_flattened()[plane as usize + at..])
+}
+
+/// The planes that a ray meets first and those that it meets last, by axis.
+#[derive(Clone, Copy)]
+struct Planes {
+    near: [Plane; 3],
+    far: [Plane; 3],
+}
+
+/// By the direction's sign bits.
+const PLANES: [Planes; 8] = planes();
+
+const fn planes() -> [Planes; 8] {
+    use Plane::{MaxX, MaxY, MaxZ, MinX, MinY, MinZ};
+    let (min, max) = ([MinX, MinY, MinZ], [MaxX, MaxY, MaxZ]);
+    let mut all = [Planes {
+        near: min,
+        far: max,
+    }; 8];
+    let mut signs = 0;
+    while signs < 8 {
+        let mut axis = 0;
+        while axis < 3 {
+            if signs >> axis & 1 == 1 {
+                all[signs].near[axis] = max[axis];
+                all[signs].far[axis] = min[axis];
+            }
+            axis += 1;
+        }
+        signs += 1;
+    }
+    all
+}
+
+/// An axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub(super) enum Axis {
+    X,
+    Y,
+    Z,
+}
+
+/// kx, ky, kz of the watertight test by kz, the axis of the largest component.
+const AXES: [[Axis; 3]; 3] = [
+    [Axis::Y, Axis::Z, Axis::X],
+    [Axis::Z, Axis::X, Axis::Y],
+    [Axis::X, Axis::Y, Axis::Z],
+];
+
+/// What costs once per ray, for as many rays as there are lanes.
+#[derive(Clone, Copy)]
+pub(super) struct Setup<L> {
+    /// 1 / d for near planes and for far ones.
+    pub(super) inv: [[L; 3]; 2],
+    /// −d[kx] / d[kz], −d[ky] / d[kz], 1 / d[kz].
+    pub(super) shear: [L; 3],
+    /// 0, 1 or 2: the axis of the largest component.
+    pub(super) kz: L,
+}
+
+impl<L: Lanes> Setup<L> {
+    #[inline(always)]
+    pub(super) fn new(dir: [L; 3]) -> Setup<L> {
+        let one = L::splat(1.0);
+        let inv = [one / dir[0], one / dir[1], one / dir[2]];
+        let [nearer, farther] = [L::splat(NEAR), L::splat(FAR)];
+        let [x, y, z] = [dir[0].abs(), dir[1].abs(), dir[2].abs()];
+        let y_first = x.lt(y);
+        let z_first = x.max(y).lt(z);
+        let choose = |a, b, c| L::select(z_first, c, L::select(y_first, b, a));
+        let dz = choose(dir[0], dir[1], dir[2]);
+        Setup {
+            inv: [
+                [inv[0] * nearer, inv[1] * nearer, inv[2] * nearer],
+                [inv[0] * farther, inv[1] * farther, inv[2] * farther],
+            ],
+            shear: [
+                -choose(dir[1], dir[2], dir[0]) / dz,
+                -choose(dir[2], dir[0], dir[1]) / dz,
+                one / dz,
+            ],
+            kz: choose(L::splat(0.0), L::splat(1.0), L::splat(2.0)),
+        }
+    }
+
+    /// Which rays can hit: all is finite, and the direction is not zero.
+    #[inline(always)]
+    pub(super) fn sound(origin: [L; 3], dir: [L; 3]) -> u32 {
+        let [zero, most] = [L::splat(0.0), L::splat(f32::MAX)];
+        let small = |v: [L; 3]| v[0].abs().le(most) & v[1].abs().le(most) & v[2].abs().le(most);
+        let somewhere = zero.lt(dir[0].abs()) | zero.lt(dir[1].abs()) | zero.lt(dir[2].abs());
+        L::bits(small(origin) & small(dir) & somewhere)
+    }
+}
 
 /// A ray in lanes, with what the slab and the triangle test want once.
 #[derive(Clone, Copy)]
 pub(super) struct WalkRay<L> {
     /// Origin, one axis after the other.
     pub(super) origin: [L; 3],
-    inv: [L; 3],
-    /// Which of six planes is the near one, and which the far one, by axis.
-    near: [usize; 3],
-    far: [usize; 3],
-    /// kx, ky, kz of the watertight test: kz is the axis of the largest component.
-    pub(super) axes: [usize; 3],
+    /// 1 / d for near planes and for far ones.
+    inv: [[L; 3]; 2],
     /// −d[kx] / d[kz], −d[ky] / d[kz], 1 / d[kz].
     pub(super) shear: [L; 3],
     /// Origin and direction as given.
     pub(super) origin_dir: [[f32; 3]; 2],
+    planes: Planes,
+    /// kx, ky, kz of the watertight test.
+    pub(super) axes: [Axis; 3],
 }
 
 /// Where a ray is inside a box, widened; empty if `near <= far` does not hold.
@@ -40,59 +150,46 @@ impl<L: Lanes> WalkRay<L> {
     /// Nothing for a ray that cannot hit: something is not finite, or the direction is zero.
     #[inline(always)]
     pub(super) fn new(origin: [f32; 3], dir: [f32; 3]) -> Option<WalkRay<L>> {
-        let [x, y, z] = [dir[0].abs(), dir[1].abs(), dir[2].abs()];
-        let mut finite = true;
-        for axis in 0..3 {
-            finite &= origin[axis].is_finite() & dir[axis].is_finite();
-        }
-        if !finite || (x == 0.0 && y == 0.0 && z == 0.0) {
-            return None;
-        }
-        let kz = if x >= y && x >= z {
-            0
-        } else {
-            1 + usize::from(z > y)
-        };
-        let [kx, ky] = [[1, 2], [2, 0], [0, 1]][kz];
-        let negative = [
-            usize::from(dir[0].is_sign_negative()),
-            usize::from(dir[1].is_sign_negative()),
-            usize::from(dir[2].is_sign_negative()),
-        ];
-        let shear = [-dir[kx] / dir[kz], -dir[ky] / dir[kz], 1.0 / dir[kz]];
-        Some(WalkRay {
+        let sound = Setup::<f32>::sound(origin, dir) != 0;
+        sound.then(|| WalkRay::prepared(origin, dir, &Setup::<f32>::new(dir)))
+    }
+
+    /// A ray whose setup is done.
+    #[inline(always)]
+    pub(super) fn prepared(origin: [f32; 3], dir: [f32; 3], setup: &Setup<f32>) -> WalkRay<L> {
+        let sign = |axis: usize| (dir[axis].to_bits() >> 31) as usize;
+        WalkRay {
             origin: splat(origin),
-            inv: splat([1.0 / dir[0], 1.0 / dir[1], 1.0 / dir[2]]),
-            near: [3 * negative[0], 1 + 3 * negative[1], 2 + 3 * negative[2]],
-            far: [
-                3 - 3 * negative[0],
-                4 - 3 * negative[1],
-                5 - 3 * negative[2],
-            ],
-            axes: [kx, ky, kz],
-            shear: splat(shear),
+            inv: [splat(setup.inv[0]), splat(setup.inv[1])],
+            shear: splat(setup.shear),
             origin_dir: [origin, dir],
-        })
+            planes: PLANES[sign(0) | sign(1) << 1 | sign(2) << 2],
+            axes: AXES[if setup.kz > 1.5 {
+                2
+            } else {
+                usize::from(setup.kz > 0.5)
+            }],
+        }
     }
 
     /// Whether the direction's sign bit is set on the axis.
     #[inline(always)]
     fn negative(&self, axis: usize) -> bool {
-        self.near[axis] > self.far[axis]
+        self.planes.near[axis] as u8 > self.planes.far[axis] as u8
     }
 
     /// The slab test of `L::N` boxes from lane `at` on.
     #[inline(always)]
     pub(super) fn slabs(&self, planes: &[[f32; BLOCK]; 6], at: usize) -> Interval<L> {
         let near = [
-            L::load(&planes[self.near[0]][at..]),
-            L::load(&planes[self.near[1]][at..]),
-            L::load(&planes[self.near[2]][at..]),
+            plane(planes, self.planes.near[0], at),
+            plane(planes, self.planes.near[1], at),
+            plane(planes, self.planes.near[2], at),
         ];
         let far = [
-            L::load(&planes[self.far[0]][at..]),
-            L::load(&planes[self.far[1]][at..]),
-            L::load(&planes[self.far[2]][at..]),
+            plane(planes, self.planes.far[0], at),
+            plane(planes, self.planes.far[1], at),
+            plane(planes, self.planes.far[2], at),
         ];
         self.between(near, far)
     }
@@ -120,15 +217,12 @@ impl<L: Lanes> WalkRay<L> {
         let mut near = L::splat(0.0);
         let mut far = L::splat(f32::INFINITY);
         for axis in 0..3 {
-            let n = (near_planes[axis] - self.origin[axis]) * self.inv[axis];
-            let f = (far_planes[axis] - self.origin[axis]) * self.inv[axis];
+            let n = (near_planes[axis] - self.origin[axis]) * self.inv[0][axis];
+            let f = (far_planes[axis] - self.origin[axis]) * self.inv[1][axis];
             near = n.max(near);
             far = f.min(far);
         }
-        Interval {
-            near: near * L::splat(NEAR),
-            far: far * L::splat(FAR),
-        }
+        Interval { near, far }
     }
 }
 

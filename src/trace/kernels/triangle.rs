@@ -13,8 +13,10 @@ use crate::trace::spawn::gamma;
 /// Hits of a block's lanes; lanes that hit nothing hold anything.
 pub(super) struct Candidates {
     pub(super) t: [f32; BLOCK],
-    pub(super) u: [f32; BLOCK],
-    pub(super) v: [f32; BLOCK],
+    /// Edge functions opposite the second and third vertex, and the sum of all three: their quotients are u and v.
+    pub(super) e1: [f32; BLOCK],
+    pub(super) e2: [f32; BLOCK],
+    pub(super) det: [f32; BLOCK],
 }
 
 /// Vertices relative to the ray's origin, sheared along it: `p[vertex]` is x, y and z before scaling by 1 / d[kz].
@@ -28,11 +30,20 @@ struct Edges<L> {
     det: L,
 }
 
+/// Whether the edge functions do not differ in sign.
+#[inline(always)]
+fn inside<L: Lanes>(e: [L; 3]) -> L::Mask {
+    let zero = L::splat(0.0);
+    let least = e[0].min(e[1]).min(e[2]);
+    let greatest = e[0].max(e[1]).max(e[2]);
+    zero.le(least) | greatest.le(zero)
+}
+
 /// Tests the `L::N` triangles from lane `at` on; returns the lanes that hit, in bits from 0 on.
 ///
-/// A hit's t exceeds its own error bound, so that it is above 0 whatever the rounding, or its sign in f64 says so
-/// ([`in_front`]). It is clamped into the widened slab interval of the triangle's own box (a candidate whose interval is
-/// empty is none), raised to `floor`, and at most `limit`.
+/// A hit is in front of the origin if its box is, or else if f64 says so ([`in_front`]). Its t is clamped into the widened
+/// slab interval of the triangle's own box (a candidate whose interval is empty is none), raised to `floor`, and at most
+/// `limit`.
 #[inline(always)]
 pub(super) fn test<L: Lanes>(
     ray: &WalkRay<L>,
@@ -44,9 +55,7 @@ pub(super) fn test<L: Lanes>(
     let sheared = Sheared::new(ray, block, at);
     let Edges { e, det } = sheared.edges();
     let zero = L::splat(0.0);
-    let positive = zero.le(e[0]) & zero.le(e[1]) & zero.le(e[2]);
-    let negative = e[0].le(zero) & e[1].le(zero) & e[2].le(zero);
-    let inside = (positive | negative) & zero.lt(det.abs());
+    let inside = inside(e) & zero.lt(det.abs());
     if L::bits(inside) == 0 {
         return 0;
     }
@@ -56,17 +65,17 @@ pub(super) fn test<L: Lanes>(
         sheared.p[2][2] * ray.shear[2],
     ];
     let t = (e[0] * z[0] + e[1] * z[1] + e[2] * z[2]) / det;
-    let bound = sheared.t_error(e, z) / det.abs();
     let own = own_box(ray, block, at);
     let clamped = t.min(own.far).max(own.near).max(L::splat(floor));
     clamped.store(&mut out.t[at..]);
-    (e[1] / det).store(&mut out.u[at..]);
-    (e[2] / det).store(&mut out.v[at..]);
+    e[1].store(&mut out.e1[at..]);
+    e[2].store(&mut out.e2[at..]);
+    det.store(&mut out.det[at..]);
     let counts = inside & own.near.le(own.far) & clamped.le(L::splat(limit));
-    let mut hits = L::bits(counts & bound.lt(t) & zero.lt(clamped)) << at;
-    let mut doubtful = L::bits(counts & t.abs().le(bound)) << at;
+    let mut hits = L::bits(counts & zero.lt(own.near)) << at;
+    let mut doubtful = L::bits(counts & own.near.le(zero)) << at;
     while doubtful != 0 {
-        let lane = doubtful.trailing_zeros() as usize;
+        let lane = doubtful.trailing_zeros() as usize & (BLOCK - 1);
         doubtful &= doubtful - 1;
         if in_front(ray.origin_dir, block, lane) {
             out.t[lane] = out.t[lane].max(f32::MIN_POSITIVE);
@@ -76,10 +85,10 @@ pub(super) fn test<L: Lanes>(
     hits
 }
 
-/// The sign of a t that is smaller than its error, in f64: whether the ray goes towards the triangle's plane. A function of
-/// the ray and the triangle alone, like every rule of what a hit is.
+/// The sign of t in f64, where the triangle's box is not in front of the origin: whether the ray goes towards the
+/// triangle's plane. A function of the ray and the triangle alone, like every rule of what a hit is.
 ///
-/// Rejecting every doubtful t would lose the rays that leave a surface close to an edge for the neighbour across it;
+/// Rejecting every such t would lose the rays that leave a surface close to an edge for the neighbour across it;
 /// accepting it would let rays meet the triangle that they leave, from which `offset_origin` moves them by more than f64
 /// rounds.
 #[inline(always)]
@@ -101,7 +110,7 @@ fn in_front([origin, dir]: [[f32; 3]; 2], block: &TriangleBlock, lane: usize) ->
 impl<L: Lanes> Sheared<L> {
     #[inline(always)]
     fn new(ray: &WalkRay<L>, block: &TriangleBlock, at: usize) -> Sheared<L> {
-        let [kx, ky, kz] = ray.axes;
+        let [kx, ky, kz] = ray.axes.map(|axis| axis as usize);
         let zero = L::splat(0.0);
         let mut p = [[zero; 3]; 3];
         for (out, vertex) in p.iter_mut().zip(&block.v) {
@@ -114,13 +123,18 @@ impl<L: Lanes> Sheared<L> {
     }
 
     #[inline(always)]
-    fn edges(&self) -> Edges<L> {
+    fn edge_functions(&self) -> [L; 3] {
         let [a, b, c] = self.p;
-        let e = [
+        [
             b[0] * c[1] - b[1] * c[0],
             c[0] * a[1] - c[1] * a[0],
             a[0] * b[1] - a[1] * b[0],
-        ];
+        ]
+    }
+
+    #[inline(always)]
+    fn edges(&self) -> Edges<L> {
+        let e = self.edge_functions();
         Edges {
             e,
             det: e[0] + e[1] + e[2],

@@ -5,13 +5,16 @@ use super::sphere::WideRay;
 use super::triangle::{self, Candidates};
 use crate::flat::bvh::{STACK, WIDTH, kind};
 use crate::flat::{
-    BLOCK, Bvh, FlatScene, Instance, LinearNode, SphereBlock, Spheres, TriangleBlock,
+    BLOCK, Bvh, Child, FlatScene, Instance, LinearNode, SphereBlock, Spheres, TriangleBlock,
 };
 use crate::math::lanes::{Lanes, WideLanes};
 use crate::trace::Hits;
 
-/// Children put off: `child`, `kind`, and where the ray enters. Its length is proven by the builder's cap on depth.
-pub(super) type Stack = [(u32, u32, f32); STACK];
+/// Children put off, and where the ray enters them. Its length is proven by the builder's cap on depth.
+pub(super) type Stack = [(Child, f32); STACK];
+
+/// A stack with nothing on it.
+pub(super) const EMPTY_STACK: Stack = [(Child::inner(0), 0.0); STACK];
 
 /// The closest hit so far.
 #[derive(Clone, Copy)]
@@ -36,20 +39,18 @@ impl Best {
         }
     }
 
-    /// Takes the candidate if it comes first by (t, instance, prim).
+    /// Whether the candidate comes first by (t, instance, prim).
     #[inline(always)]
-    fn offer(&mut self, candidate: Best) {
+    fn yields_to(&self, candidate: &Best) -> bool {
         let tie = candidate.t == self.t
             && self.prim != Hits::NONE
             && (candidate.instance, candidate.prim) < (self.instance, self.prim);
-        if candidate.t < self.t || tie {
-            *self = candidate;
-        }
+        candidate.t < self.t || tie
     }
 
     /// What boxes are culled by: nothing at infinity is ever entered.
     #[inline(always)]
-    fn cull(&self) -> f32 {
+    pub(super) fn cull(&self) -> f32 {
         Lanes::min(self.t, f32::MAX)
     }
 }
@@ -154,26 +155,21 @@ pub(super) fn walk<
     best: &mut Best,
 ) -> bool {
     let bvh = tree.bvh;
-    let [mut child, mut tagged] = [bvh.root, bvh.root_kind];
-    if tagged == kind::INNER && bvh.nodes.is_empty() {
+    let mut child = bvh.root;
+    if child.kind() == kind::INNER && bvh.nodes.is_empty() {
         return false;
     }
     let mut top = 0;
     loop {
-        let run = child as usize..(child + (tagged & !kind::MASK)) as usize;
-        let found = match tagged & kind::MASK {
-            kind::INNER => {
-                let node = &bvh.nodes[child as usize];
-                if let Some(nearest) = enter(node, ray, best.cull(), stack, &mut top) {
-                    [child, tagged] = [node.child[nearest], node.kind[nearest]];
-                    continue;
-                }
-                false
+        let found = if child.kind() == kind::INNER {
+            let node = &bvh.nodes[child.index()];
+            if let Some(nearest) = enter(node, ray, best.cull(), stack, &mut top) {
+                child = nearest;
+                continue;
             }
-            kind::TRIANGLES if T => triangle_leaf::<L, ANY>(tree, &tree.triangles[run], ray, best),
-            kind::SPHERES if S => sphere_leaf::<L, ANY>(&tree.spheres[run], ray, best),
-            kind::INSTANCES => instances.test::<ANY>(&bvh.instance_order[run], ray, best),
-            _ => false,
+            false
+        } else {
+            leaf::<L, I, T, S, ANY>(tree, child, ray, instances, best)
         };
         if ANY && found {
             return true;
@@ -183,11 +179,35 @@ pub(super) fn walk<
                 return false;
             }
             top -= 1;
-            if stack[top].2 <= best.cull() {
+            if stack[top].1 <= best.cull() {
                 break;
             }
         }
-        (child, tagged, _) = stack[top];
+        child = stack[top].0;
+    }
+}
+
+/// Tests what a leaf holds; true ends the walk.
+#[inline(always)]
+pub(super) fn leaf<
+    L: Lanes,
+    I: InstanceLeaves<L>,
+    const T: bool,
+    const S: bool,
+    const ANY: bool,
+>(
+    tree: &Tree,
+    child: Child,
+    ray: &WalkRay<L>,
+    instances: &mut I,
+    best: &mut Best,
+) -> bool {
+    let run = child.index()..child.index() + child.len();
+    match child.kind() {
+        kind::TRIANGLES if T => triangle_leaf::<L, ANY>(tree, &tree.triangles[run], ray, best),
+        kind::SPHERES if S => sphere_leaf::<L, ANY>(&tree.spheres[run], ray, best),
+        kind::INSTANCES => instances.test::<ANY>(&tree.bvh.instance_order[run], ray, best),
+        _ => false,
     }
 }
 
@@ -199,7 +219,7 @@ fn enter<L: Lanes>(
     cull: f32,
     stack: &mut Stack,
     top: &mut usize,
-) -> Option<usize> {
+) -> Option<Child> {
     let mut near = [0.0; WIDTH];
     let mut met = 0;
     let mut at = 0;
@@ -221,21 +241,21 @@ fn enter<L: Lanes>(
         if near[far] < near[nearest] {
             (far, nearest) = (nearest, far);
         }
-        let entry = (node.child[far], node.kind[far], near[far]);
+        let entry = (Child(node.child[far]), near[far]);
         let mut place = *top;
-        while place > first && stack[place - 1].2 < entry.2 {
+        while place > first && stack[place - 1].1 < entry.1 {
             stack[place] = stack[place - 1];
             place -= 1;
         }
         stack[place] = entry;
         *top += 1;
     }
-    Some(nearest)
+    Some(Child(node.child[nearest]))
 }
 
 /// Index of the lowest set bit of eight.
 #[inline(always)]
-fn lowest(bits: u32) -> usize {
+pub(super) fn lowest(bits: u32) -> usize {
     bits.trailing_zeros() as usize & (WIDTH - 1)
 }
 
@@ -246,31 +266,48 @@ fn triangle_leaf<L: Lanes, const ANY: bool>(
     ray: &WalkRay<L>,
     best: &mut Best,
 ) -> bool {
+    for block in blocks {
+        if triangle_block::<L, ANY>(tree, block, ray, best) {
+            return true;
+        }
+    }
+    false
+}
+
+/// Tests a block of triangles; with `ANY`, true ends the walk.
+#[inline(always)]
+pub(super) fn triangle_block<L: Lanes, const ANY: bool>(
+    tree: &Tree,
+    block: &TriangleBlock,
+    ray: &WalkRay<L>,
+    best: &mut Best,
+) -> bool {
     let mut c = Candidates {
         t: [0.0; BLOCK],
-        u: [0.0; BLOCK],
-        v: [0.0; BLOCK],
+        e1: [0.0; BLOCK],
+        e2: [0.0; BLOCK],
+        det: [0.0; BLOCK],
     };
-    for block in blocks {
-        let mut hit = 0;
-        let mut at = 0;
-        while at < BLOCK {
-            hit |= triangle::test(ray, block, at, [tree.floor, best.t], &mut c);
-            at += L::N;
+    let mut hit = 0;
+    let mut at = 0;
+    while at < BLOCK {
+        hit |= triangle::test(ray, block, at, [tree.floor, best.t], &mut c);
+        at += L::N;
+    }
+    while hit != 0 {
+        let lane = lowest(hit);
+        hit &= hit - 1;
+        if ANY && c.t[lane] < best.t {
+            best.prim = block.prim[lane];
+            return true;
         }
-        while hit != 0 {
-            let lane = lowest(hit);
-            hit &= hit - 1;
-            if ANY && c.t[lane] < best.t {
-                return true;
-            }
-            best.offer(Best {
-                t: c.t[lane],
-                u: c.u[lane],
-                v: c.v[lane],
-                prim: block.prim[lane],
-                instance: tree.instance,
-            });
+        let mut candidate = Best::below(c.t[lane]);
+        candidate.prim = block.prim[lane];
+        candidate.instance = tree.instance;
+        if best.yields_to(&candidate) {
+            candidate.u = c.e1[lane] / c.det[lane];
+            candidate.v = c.e2[lane] / c.det[lane];
+            *best = candidate;
         }
     }
     false
@@ -310,11 +347,14 @@ fn sphere_leaf<L: Lanes, const ANY: bool>(
             let lane = lowest(hit);
             hit &= hit - 1;
             if ANY && t[lane] < best.t {
+                best.prim = Spheres::TAG | block.prim[lane];
                 return true;
             }
             let mut candidate = Best::below(t[lane]);
             candidate.prim = Spheres::TAG | block.prim[lane];
-            best.offer(candidate);
+            if best.yields_to(&candidate) {
+                *best = candidate;
+            }
         }
     }
     false

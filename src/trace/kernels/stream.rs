@@ -1,0 +1,449 @@
+//! Many rays in flight through one tree, in step.
+//!
+//! A ray by itself waits: for a node that is not in the cache, and for the branch that is taken once the node's boxes are
+//! tested. So [`SLOTS`] rays go together. Each round takes every ray one step on, a stage at a time: the boxes of all rays
+//! at inner nodes, then the order of their children and the next node of each, then the triangles of all rays at leaves.
+//! What a stage finds, the next one reads, hence no ray's arithmetic waits for its own, and the only branches that depend
+//! on a ray are those around a hit. The next node is asked for (prefetched) a round before it is read. Rays in flight are
+//! the interleaving of Chen, Ailamaki, Gibbons and Mowry (*Improving hash join performance through prefetching*, 2004),
+//! stages those of wavefront path tracing (Laine, Karras and Aila 2013), in a cache's first level.
+//!
+//! Deliberately absent: sorting of rays, whose order is the caller's.
+
+use super::batch::load3;
+use super::ray::{Setup, WalkRay};
+use super::walk::{self, Best, InstanceLeaves, Tree};
+use crate::flat::bvh::{STACK, WIDTH, kind};
+use crate::flat::{BLOCK, Child, LinearNode, TriangleBlock};
+use crate::math::lanes::Lanes;
+use crate::trace::Rays;
+
+/// Rays in flight. 16 leave a memory's latency unhidden, 64 leave the first-level cache.
+pub(super) const SLOTS: usize = 32;
+
+/// At the bottom of every stack: the ray is done.
+const DONE: Child = Child(u32::MAX);
+
+/// Bytes of nodes and blocks from which on they are asked for ahead: half of a second-level cache.
+const COLD: usize = 1 << 18;
+
+/// A ray in flight.
+#[derive(Clone, Copy)]
+#[repr(C, align(64))]
+struct Slot<L> {
+    ray: WalkRay<L>,
+    /// Where the ray enters the boxes of its node; negative where it does not.
+    near: [f32; WIDTH],
+    /// The boxes that it enters, in bits.
+    met: u32,
+    /// Where it is.
+    child: Child,
+    /// Length of its stack.
+    top: usize,
+    best: Best,
+    /// Index in the batch.
+    ray_index: usize,
+}
+
+/// Children put off by one ray. A stage writes eight entries at once, hence as many beyond the last.
+#[derive(Clone, Copy)]
+struct Stack {
+    children: [u32; STACK + WIDTH],
+    /// Where the ray enters them, or less.
+    entries: [f32; STACK + WIDTH],
+}
+
+impl Stack {
+    /// Nothing but [`DONE`], which every ray enters.
+    const BOTTOM: Stack = Stack {
+        children: [DONE.0; STACK + WIDTH],
+        entries: [f32::NEG_INFINITY; STACK + WIDTH],
+    };
+}
+
+/// Rays of a batch whose setup is done.
+const AHEAD: usize = 64;
+
+/// The setup of the next rays of a batch, `[value][ray]`.
+struct Prepared {
+    /// Origin, direction, near and far 1 / d, shear, kz.
+    values: [[f32; AHEAD]; 16],
+    /// Which rays can hit.
+    sound: [u32; AHEAD],
+}
+
+/// Room for what [`walk_all`] keeps of its rays, from batch to batch.
+pub(super) struct Scratch {
+    stacks: Box<[Stack; SLOTS]>,
+    prepared: Box<Prepared>,
+}
+
+impl Default for Scratch {
+    fn default() -> Scratch {
+        Scratch {
+            stacks: Box::new([Stack::BOTTOM; SLOTS]),
+            prepared: Box::new(Prepared {
+                values: [[0.0; AHEAD]; 16],
+                sound: [0; AHEAD],
+            }),
+        }
+    }
+}
+
+impl Prepared {
+    /// Sets up the rays from `first` on.
+    #[inline(always)]
+    fn fill<L: Lanes>(&mut self, rays: &Rays, first: usize) {
+        let mut at = 0;
+        while at < AHEAD && first + at < rays.len() {
+            let origin = load3::<L>(&rays.origin, first + at);
+            let dir = load3::<L>(&rays.dir, first + at);
+            let setup = Setup::new(dir);
+            let [near, far] = setup.inv;
+            let values = [
+                origin[0],
+                origin[1],
+                origin[2],
+                dir[0],
+                dir[1],
+                dir[2],
+                near[0],
+                near[1],
+                near[2],
+                far[0],
+                far[1],
+                far[2],
+                setup.shear[0],
+                setup.shear[1],
+                setup.shear[2],
+                setup.kz,
+            ];
+            for (to, value) in self.values.iter_mut().zip(values) {
+                value.store(&mut to[at..]);
+            }
+            let sound = Setup::sound(origin, dir);
+            for lane in 0..L::N {
+                self.sound[(at + lane) % AHEAD] = sound >> lane & 1;
+            }
+            at += L::N;
+        }
+    }
+
+    /// Ray `k` of those that were set up last.
+    #[inline(always)]
+    fn ray<L: Lanes>(&self, k: usize) -> WalkRay<L> {
+        let k = k % AHEAD;
+        let v = |row: usize| self.values[row][k];
+        let setup = Setup {
+            inv: [[v(6), v(7), v(8)], [v(9), v(10), v(11)]],
+            shear: [v(12), v(13), v(14)],
+            kz: v(15),
+        };
+        let (origin, dir) = ([v(0), v(1), v(2)], [v(3), v(4), v(5)]);
+        WalkRay::prepared(origin, dir, &setup)
+    }
+}
+
+/// Slots that wait for a stage.
+#[derive(Clone, Copy)]
+struct List {
+    slots: [u8; 2 * SLOTS],
+    len: usize,
+}
+
+impl List {
+    const EMPTY: List = List {
+        slots: [0; 2 * SLOTS],
+        len: 0,
+    };
+
+    #[inline(always)]
+    fn push_if(&mut self, slot: u8, yes: bool) {
+        self.slots[self.len % (2 * SLOTS)] = slot;
+        self.len += usize::from(yes);
+    }
+}
+
+/// Slots by what they are at: inner nodes, triangles, and the rest: spheres, instances, and done.
+struct Lists {
+    slots: [[u8; 2 * SLOTS]; 3],
+    len: [usize; 3],
+}
+
+const INNER: usize = 0;
+const TRIANGLES: usize = 1;
+const REST: usize = 2;
+
+impl Lists {
+    const EMPTY: Lists = Lists {
+        slots: [[0; 2 * SLOTS]; 3],
+        len: [0; 3],
+    };
+
+    /// Appends a slot to its list without a branch: to the other two it is written beyond their ends.
+    #[inline(always)]
+    fn push(&mut self, len: &mut [usize; 3], slot: u8, child: Child) {
+        let kind = child.kind();
+        let is = [
+            kind == kind::INNER,
+            kind == kind::TRIANGLES,
+            kind > kind::TRIANGLES,
+        ];
+        for list in 0..3 {
+            self.slots[list][len[list] % (2 * SLOTS)] = slot;
+            len[list] += usize::from(is[list]);
+        }
+    }
+
+    /// Empties a list.
+    #[inline(always)]
+    fn take(&mut self, list: usize) -> List {
+        List {
+            slots: self.slots[list],
+            len: std::mem::take(&mut self.len[list]),
+        }
+    }
+}
+
+/// Where rays come from and go to.
+pub(super) trait Sink {
+    /// What is known of a ray before the walk: its limit, or the closest hit that it has already. Nothing for a ray that
+    /// is not to be walked.
+    fn best(&self, index: usize) -> Option<Best>;
+    /// What became of a ray.
+    fn done(&mut self, index: usize, best: &Best);
+}
+
+/// Rays in flight through one tree.
+struct Flight<'a, L> {
+    tree: &'a Tree<'a>,
+    nodes: &'a [LinearNode],
+    blocks: &'a [TriangleBlock],
+    slots: [Slot<L>; SLOTS],
+    lists: Lists,
+    stacks: &'a mut [Stack; SLOTS],
+    /// Whether nodes are asked for ahead.
+    cold: bool,
+}
+
+/// Walks the rays of a batch through the tree. With `ANY`, a ray is done at its first hit below its limit, of which `best`
+/// then tells the primitive.
+#[inline(always)]
+pub(super) fn walk_all<
+    L: Lanes,
+    I: InstanceLeaves<L>,
+    R: Sink,
+    const T: bool,
+    const S: bool,
+    const ANY: bool,
+>(
+    tree: &Tree,
+    rays: &Rays,
+    sink: &mut R,
+    instances: &mut I,
+    scratch: &mut Scratch,
+) {
+    let Scratch { stacks, prepared } = scratch;
+    let mut flight = Flight::<L>::new(tree, stacks);
+    let mut free = List::EMPTY;
+    for slot in 0..SLOTS {
+        free.push_if(slot as u8, true);
+    }
+    let mut next = 0;
+    loop {
+        for &slot in &free.slots[..free.len] {
+            while next < rays.len() {
+                let i = next;
+                next += 1;
+                if i % AHEAD == 0 {
+                    prepared.fill::<L>(rays, i);
+                }
+                if prepared.sound[i % AHEAD] != 0
+                    && let Some(best) = sink.best(i)
+                {
+                    flight.start(slot, i, prepared.ray(i), best);
+                    break;
+                }
+            }
+        }
+        flight.inner_nodes();
+        if T {
+            flight.triangle_blocks::<ANY>();
+        }
+        free = flight.rest::<I, R, S, ANY>(sink, instances);
+        if free.len == 0 && flight.lists.len == [0; 3] {
+            return;
+        }
+    }
+}
+
+impl<'a, L: Lanes> Flight<'a, L> {
+    #[inline(always)]
+    fn new(tree: &'a Tree<'a>, stacks: &'a mut [Stack; SLOTS]) -> Flight<'a, L> {
+        let no_setup = Setup {
+            inv: [[0.0; 3]; 2],
+            shear: [0.0; 3],
+            kz: 0.0,
+        };
+        let idle = Slot {
+            ray: WalkRay::prepared([0.0; 3], [0.0; 3], &no_setup),
+            near: [0.0; WIDTH],
+            met: 0,
+            child: DONE,
+            top: 0,
+            best: Best::below(0.0),
+            ray_index: 0,
+        };
+        Flight {
+            tree,
+            nodes: &tree.bvh.nodes,
+            blocks: tree.triangles,
+            slots: [idle; SLOTS],
+            lists: Lists::EMPTY,
+            stacks,
+            cold: size_of_val(&tree.bvh.nodes[..]) + size_of_val(tree.triangles) > COLD,
+        }
+    }
+
+    #[inline(always)]
+    fn start(&mut self, slot: u8, index: usize, ray: WalkRay<L>, best: Best) {
+        let s = &mut self.slots[slot as usize % SLOTS];
+        s.ray = ray;
+        s.best = best;
+        s.ray_index = index;
+        s.child = self.tree.bvh.root;
+        s.top = 1;
+        let mut len = self.lists.len;
+        self.lists.push(&mut len, slot, s.child);
+        self.lists.len = len;
+    }
+
+    /// One step of every ray at an inner node.
+    #[inline(always)]
+    fn inner_nodes(&mut self) {
+        let list = self.lists.take(INNER);
+        let list = &list.slots[..list.len];
+        let nodes = self.nodes;
+        for &slot in list {
+            let s = &mut self.slots[slot as usize % SLOTS];
+            s.met = boxes(&nodes[s.child.index()], &s.ray, s.best.cull(), &mut s.near);
+        }
+        let mut len = self.lists.len;
+        for &slot in list {
+            let s = &mut self.slots[slot as usize % SLOTS];
+            let node = &nodes[s.child.index()];
+            let stack = &mut self.stacks[slot as usize % SLOTS];
+            if let Some(children) = stack.children[s.top..].first_chunk_mut()
+                && let Some(entries) = stack.entries[s.top..].first_chunk_mut()
+            {
+                s.top += L::sort_falling(&s.near, s.met, &node.child, children, entries);
+            }
+            s.child = pop(stack, &mut s.top, s.best.cull());
+            self.go(&mut len, slot);
+        }
+        self.lists.len = len;
+    }
+
+    /// Sends a ray to its child.
+    #[inline(always)]
+    fn go(&mut self, len: &mut [usize; 3], slot: u8) {
+        let child = self.slots[slot as usize % SLOTS].child;
+        if self.cold {
+            let address = if child.kind() == kind::TRIANGLES {
+                self.blocks
+                    .as_ptr()
+                    .wrapping_add(child.index())
+                    .cast::<u8>()
+            } else {
+                self.nodes.as_ptr().wrapping_add(child.index()).cast()
+            };
+            L::prefetch(address, size_of::<TriangleBlock>());
+        }
+        self.lists.push(len, slot, child);
+    }
+
+    /// One block of every ray at a leaf of triangles.
+    #[inline(always)]
+    fn triangle_blocks<const ANY: bool>(&mut self) {
+        let list = self.lists.take(TRIANGLES);
+        let list = &list.slots[..list.len];
+        for &slot in list {
+            let s = &mut self.slots[slot as usize % SLOTS];
+            let block = &self.blocks[s.child.index()];
+            if walk::triangle_block::<L, ANY>(self.tree, block, &s.ray, &mut s.best) {
+                s.top = 1;
+                s.child = s.child.alone();
+            }
+        }
+        let mut len = self.lists.len;
+        for &slot in list {
+            let s = &mut self.slots[slot as usize % SLOTS];
+            let stack = &self.stacks[slot as usize % SLOTS];
+            s.child = match s.child.rest() {
+                Some(rest) => rest,
+                None => pop(stack, &mut s.top, s.best.cull()),
+            };
+            self.go(&mut len, slot);
+        }
+        self.lists.len = len;
+    }
+
+    /// The rays at spheres and instances, each by itself; returns the slots of those that are done.
+    #[inline(always)]
+    fn rest<I: InstanceLeaves<L>, R: Sink, const S: bool, const ANY: bool>(
+        &mut self,
+        sink: &mut R,
+        instances: &mut I,
+    ) -> List {
+        let list = self.lists.take(REST);
+        let mut free = List::EMPTY;
+        let mut len = self.lists.len;
+        for &slot in &list.slots[..list.len] {
+            let s = &mut self.slots[slot as usize % SLOTS];
+            if s.child == DONE {
+                sink.done(s.ray_index, &s.best);
+                free.push_if(slot, true);
+                continue;
+            }
+            let child = s.child;
+            if walk::leaf::<L, I, false, S, ANY>(self.tree, child, &s.ray, instances, &mut s.best) {
+                s.top = 1;
+            }
+            s.child = pop(
+                &self.stacks[slot as usize % SLOTS],
+                &mut s.top,
+                s.best.cull(),
+            );
+            self.go(&mut len, slot);
+        }
+        self.lists.len = len;
+        free
+    }
+}
+
+/// Takes the next child off the stack that may hold a closer hit.
+#[inline(always)]
+fn pop(stack: &Stack, top: &mut usize, cull: f32) -> Child {
+    let mut at = *top - 1;
+    while stack.entries[at] > cull {
+        at -= 1;
+    }
+    *top = at;
+    Child(stack.children[at])
+}
+
+/// Tests the eight boxes of a node: writes where the ray enters them, negative where it does not, and returns the bits of
+/// those that it enters.
+#[inline(always)]
+fn boxes<L: Lanes>(node: &LinearNode, ray: &WalkRay<L>, cull: f32, near: &mut [f32; WIDTH]) -> u32 {
+    let mut met = 0;
+    let mut at = 0;
+    while at < WIDTH {
+        let interval = ray.slabs(&node.planes, at);
+        let meets = interval.meets(L::splat(cull));
+        L::select(meets, interval.near, L::splat(-1.0)).store(&mut near[at..]);
+        met |= L::bits(meets) << at;
+        at += L::N;
+    }
+    met
+}
