@@ -1,10 +1,11 @@
 //! Memory for large arrays on huge pages, where the system has them for the asking.
 //!
 //! A page of 2 MiB instead of 4 KiB makes 512 times fewer page faults while an array is filled, and fewer misses of
-//! the translation buffer when it is read at random.
+//! the translation buffer when it is read at random. Measured for the trees: building a million triangles takes 10 % less
+//! processor time, in the fast mode 25 %; a scalar walk of random rays through 4 million is not faster beyond the noise.
 
-/// Arrays below this size are left alone: a few huge pages, of which the ends are lost to alignment.
-const WORTHWHILE: usize = 4 * HUGE;
+/// Arrays below this size are left alone: up to one of two huge pages is lost to alignment.
+const WORTHWHILE: usize = 2 * HUGE;
 
 /// Size and alignment of a huge page.
 const HUGE: usize = 2 << 20;

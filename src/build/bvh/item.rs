@@ -1,8 +1,9 @@
 //! Items: primitives as the builder sees them, a box and a name in 32 bytes, and what is known of a range of them.
 
-use super::{Primitives, sphere_bounds, triangle_bounds};
+use super::{Primitives, sphere_bounds};
 use crate::flat::BLOCK;
-use crate::math::{Aabb, pages};
+use crate::flat::bvh::WIDTH;
+use crate::math::{Aabb, Vec3, pages};
 use glam::Vec4;
 use rayon::prelude::*;
 
@@ -14,7 +15,9 @@ impl Kinds {
     pub(super) const TRIANGLE: Kinds = Kinds(1 << 8);
     pub(super) const SPHERE: Kinds = Kinds(1 << 9);
     pub(super) const INSTANCE: Kinds = Kinds(1 << 10);
-    const ALL: u32 = 7 << 8;
+    /// Triangles that are blocks already, and a node over these if there are several.
+    pub(super) const READY: Kinds = Kinds(1 << 11);
+    const ALL: u32 = 15 << 8;
 
     /// Whether there is more than one.
     pub(super) fn mixed(self) -> bool {
@@ -31,8 +34,9 @@ impl Kinds {
 /// register must not meet denormal numbers, which some processors are slow at.
 const RIDER: u32 = 1 << 30;
 
-/// Low bits of the second rider: units.
+/// Low bits of the second rider: units, of which a ready node has most.
 const UNITS: u32 = 0xff;
+const _: () = assert!(WIDTH * BLOCK <= UNITS as usize);
 
 /// The smallest coordinates of the box of nothing. Finite, so that its centre is a number.
 const NOTHING: Vec4 = Vec4::MAX;
@@ -47,16 +51,11 @@ pub(super) struct Item {
 }
 
 impl Item {
-    fn new(bounds: Aabb, kind: Kinds, index: usize) -> Item {
-        let units = if kind == Kinds::INSTANCE { BLOCK } else { 1 };
-        let (min, max) = if bounds.is_empty() {
-            (NOTHING, -NOTHING)
-        } else {
-            (bounds.min.extend(0.0), bounds.max.extend(0.0))
-        };
+    pub(super) fn new(bounds: Bounds, kind: Kinds, index: usize, units: usize) -> Item {
+        let rider = |x: u32| f32::from_bits(x ^ RIDER);
         Item {
-            min: min.with_w(f32::from_bits(index as u32 ^ RIDER)),
-            max: max.with_w(f32::from_bits((kind.0 | units as u32) ^ RIDER)),
+            min: bounds.min.with_w(rider(index as u32)),
+            max: bounds.max.with_w(rider(kind.0 | units as u32)),
         }
     }
 
@@ -70,8 +69,8 @@ impl Item {
         Kinds(self.max.w.to_bits() & Kinds::ALL)
     }
 
-    /// A triangle or a sphere is a lane of a block; an instance weighs as much as a block, since a whole walk hangs
-    /// on it.
+    /// A triangle or a sphere is a lane of a block; an instance weighs as much as a block of triangles, since a whole
+    /// walk hangs on it.
     pub(super) fn units(&self) -> u32 {
         self.max.w.to_bits() & UNITS
     }
@@ -117,12 +116,48 @@ impl Bounds {
         e.x * e.y + (e.x + e.y) * e.z
     }
 
+    /// Twice the centre.
+    #[inline]
+    pub(super) fn center(&self) -> Vec4 {
+        self.min + self.max
+    }
+
     pub(super) fn aabb(&self) -> Aabb {
         let b = Aabb {
             min: self.min.truncate(),
             max: self.max.truncate(),
         };
         if b.is_empty() { Aabb::EMPTY } else { b }
+    }
+}
+
+impl From<&[Vec3; 3]> for Bounds {
+    /// The box of a triangle; of nothing if something is not finite.
+    #[inline]
+    fn from(v: &[Vec3; 3]) -> Bounds {
+        let [a, b, c] = v.map(|v| v.extend(0.0));
+        // Zero times what is not finite is not a number.
+        if (a * 0.0 + b * 0.0 + c * 0.0).cmpeq(Vec4::ZERO).all() {
+            Bounds {
+                min: a.min(b).min(c),
+                max: a.max(b).max(c),
+            }
+        } else {
+            Bounds::NOTHING
+        }
+    }
+}
+
+impl From<Aabb> for Bounds {
+    fn from(b: Aabb) -> Bounds {
+        if b.is_empty() {
+            Bounds::NOTHING
+        } else {
+            Bounds {
+                min: b.min.extend(0.0),
+                max: b.max.extend(0.0),
+            }
+        }
     }
 }
 
@@ -167,32 +202,27 @@ impl Extent {
     }
 }
 
-/// One item per primitive: triangles, then spheres, then instances.
-pub(super) fn items_of(p: &Primitives) -> Vec<Item> {
-    let triangle = |i: usize| Item::new(triangle_bounds(&p.triangles[i]), Kinds::TRIANGLE, i);
-    let sphere = |i: usize| {
-        let s = &p.spheres[i];
-        Item::new(sphere_bounds(s.center, s.radius), Kinds::SPHERE, i)
-    };
-    let instance = |i: usize| {
-        let bounds = super::finite_or_empty(p.instances[i]);
-        Item::new(bounds, Kinds::INSTANCE, i)
-    };
-    let (triangles, spheres) = (p.triangles.len(), p.triangles.len() + p.spheres.len());
-    let all = spheres + p.instances.len();
-    let mut items = pages::with_capacity(all);
-    (0..all)
-        .into_par_iter()
+/// One item per triangle.
+pub(super) fn triangles(p: &Primitives) -> Vec<Item> {
+    let mut items = pages::with_capacity(p.triangles.len() + p.spheres.len() + p.instances.len());
+    p.triangles
+        .par_iter()
         .with_min_len(super::CHUNK)
-        .map(|i| {
-            if i < triangles {
-                triangle(i)
-            } else if i < spheres {
-                sphere(i - triangles)
-            } else {
-                instance(i - spheres)
-            }
-        })
+        .enumerate()
+        .map(|(i, t)| Item::new(t.into(), Kinds::TRIANGLE, i, 1))
         .collect_into_vec(&mut items);
     items
+}
+
+/// One item per sphere, then one per instance.
+pub(super) fn others(p: &Primitives) -> impl Iterator<Item = Item> {
+    let spheres = p.spheres.iter().enumerate().map(|(i, s)| {
+        let bounds = sphere_bounds(s.center, s.radius);
+        Item::new(bounds.into(), Kinds::SPHERE, i, 1)
+    });
+    let instances = p.instances.iter().enumerate().map(|(i, &b)| {
+        let bounds = super::finite_or_empty(b);
+        Item::new(bounds.into(), Kinds::INSTANCE, i, BLOCK)
+    });
+    spheres.chain(instances)
 }

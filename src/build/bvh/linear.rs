@@ -8,61 +8,46 @@
     reason = "axes are numbers here: several arrays are indexed by one"
 )]
 
+use super::blocks::{Ready, sphere_block, triangle_block};
 use super::item::{Item, Kinds};
 use super::split::{self, NODE_COST};
 use super::tree::{BuildNode, Child, Grove, Shape};
-use super::{Built, CHUNK, Primitives, SPHERES, SphereItem, sphere_bounds};
+use super::{Built, CHUNK, Primitives, SPHERES, SphereItem};
 use crate::flat::bvh::{Child as To, WIDTH, kind};
-use crate::flat::{BLOCK, Bvh, LinearNode, SphereBlock, TriangleBlock, Triangles};
-use crate::math::{Aabb, Vec3, pages};
+use crate::flat::{BLOCK, Bvh, LinearNode, SphereBlock, TriangleBlock};
+use crate::math::{Aabb, pages};
 use rayon::prelude::*;
 use std::ops::Range;
-use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Nodes that lie breadth-first: 512 KiB, half of a second-level cache.
 const TOP: usize = 2048;
 
 /// Writes the tree down.
-pub(super) fn linearize(p: &Primitives, items: &[Item], root: Option<(Child, Grove)>) -> Built {
+pub(super) fn linearize(
+    p: &Primitives,
+    items: &[Item],
+    root: Option<(Child, Grove)>,
+    ready: Ready,
+) -> Built {
     let nothing = Child {
         bounds: Aabb::EMPTY,
         shape: Shape::Leaf(0..0),
     };
     let (root, grove) = root.unwrap_or((nothing, Grove::default()));
-    let mut order = Order::new(items, half_area(&root.bounds));
+    let mut order = Order::new(items, &ready, half_area(&root.bounds));
     let to = order.all(&grove, &root);
-    let place: Vec<AtomicU32> = (0..p.triangles.len()).map(|_| AtomicU32::new(0)).collect();
-    let mut blocks = pages::with_capacity(order.triangles.len());
-    let ranges = order.triangles.par_iter().enumerate();
-    ranges
-        .with_min_len(CHUNK / BLOCK)
-        .map(|(at, range)| triangle_block(p, &items[to_usize(range)], at, &place))
-        .collect_into_vec(&mut blocks);
-    let mut nodes = pages::with_capacity(order.nodes.len());
-    let placed = order.nodes.par_iter().with_min_len(CHUNK / WIDTH);
-    placed.map(Placed::linear).collect_into_vec(&mut nodes);
-    let spheres = order.spheres.iter().map(|range| {
-        let of = |i: &Item| p.spheres[i.index() as usize];
-        sphere_block(&items[to_usize(range)].iter().map(of).collect::<Vec<_>>())
-    });
+    let blocks = order.blocks(p);
     Built {
         bvh: Bvh {
-            nodes,
+            nodes: order.linear(),
             root: to,
-            instance_order: order
-                .instances
-                .iter()
-                .map(|i| items[*i as usize].index())
-                .collect(),
+            instance_order: order.instances(),
             bounds: root.bounds,
             depth: order.depth,
         },
-        triangles: Triangles {
-            blocks,
-            place: place.into_iter().map(AtomicU32::into_inner).collect(),
-        },
-        sphere_blocks: spheres.collect(),
+        sphere_blocks: order.sphere_blocks(p),
         cost: order.cost,
+        triangles: ready.with(blocks),
     }
 }
 
@@ -77,10 +62,11 @@ fn half_area(b: &Aabb) -> f32 {
 /// Where everything goes.
 struct Order<'a> {
     items: &'a [Item],
+    ready: &'a Ready,
     /// Half the area of the root's box.
     area: f32,
     nodes: Vec<Placed<'a>>,
-    /// Items of every triangle block.
+    /// Items of every further triangle block.
     triangles: Vec<Range<u32>>,
     /// Items of every sphere block.
     spheres: Vec<Range<u32>>,
@@ -102,12 +88,13 @@ struct Placed<'a> {
 }
 
 impl<'a> Order<'a> {
-    fn new(items: &'a [Item], area: f32) -> Order<'a> {
+    fn new(items: &'a [Item], ready: &'a Ready, area: f32) -> Order<'a> {
         Order {
             items,
+            ready,
             area,
-            nodes: Vec::new(),
-            triangles: Vec::with_capacity(items.len() / (BLOCK / 2)),
+            nodes: pages::with_capacity((items.len() + ready.children.len()) / BLOCK),
+            triangles: pages::with_capacity(items.len() / (BLOCK / 2)),
             spheres: Vec::new(),
             instances: Vec::new(),
             depth: 0,
@@ -152,9 +139,19 @@ impl<'a> Order<'a> {
         let (grove, index) = match &child.shape {
             Shape::Leaf(range) => {
                 let items = &self.items[to_usize(range)];
+                if let [item] = items
+                    && item.kind() == Kinds::READY
+                {
+                    let child = &self.ready.children[item.index() as usize];
+                    return self.child(&self.ready.grove, child, depth);
+                }
                 let units = items.iter().map(Item::units).sum();
                 self.cost += share * split::blocks(units);
                 return self.leaf(range.clone());
+            }
+            Shape::Block(index) => {
+                self.cost += share;
+                return To::run(kind::TRIANGLES, *index, 1);
             }
             Shape::Node(index) => (grove, *index as usize),
             Shape::Grove(index) => (&grove.groves[*index as usize], 0),
@@ -173,20 +170,61 @@ impl<'a> Order<'a> {
     /// Places the blocks of a leaf; returns where.
     fn leaf(&mut self, range: Range<u32>) -> To {
         let what = self.items.get(range.start as usize).map(Item::kind);
-        let (list, lanes, tag) = match what {
+        let (list, before, lanes, tag) = match what {
             None => return To::inner(0),
             Some(Kinds::INSTANCE) => {
                 let first = self.instances.len() as u32;
                 self.instances.extend(range.clone());
                 return To::run(kind::INSTANCES, first, range.len() as u32);
             }
-            Some(Kinds::SPHERE) => (&mut self.spheres, SPHERES, kind::SPHERES),
-            Some(_) => (&mut self.triangles, BLOCK, kind::TRIANGLES),
+            Some(Kinds::SPHERE) => (&mut self.spheres, 0, SPHERES, kind::SPHERES),
+            Some(_) => (
+                &mut self.triangles,
+                self.ready.blocks.len(),
+                BLOCK,
+                kind::TRIANGLES,
+            ),
         };
         let first = list.len() as u32;
         let starts = range.clone().step_by(lanes);
         list.extend(starts.map(|at| at..range.end.min(at + lanes as u32)));
-        To::run(tag, first, list.len() as u32 - first)
+        let count = list.len() as u32 - first;
+        To::run(tag, before as u32 + first, count)
+    }
+
+    fn instances(&self) -> Vec<u32> {
+        let items = self.instances.iter().map(|&i| &self.items[i as usize]);
+        items.map(Item::index).collect()
+    }
+
+    fn sphere_blocks(&self, p: &Primitives) -> Vec<SphereBlock> {
+        let of = |i: &Item| p.spheres[i.index() as usize];
+        let blocks = self.spheres.iter().map(|range| {
+            let spheres: Vec<SphereItem> = self.items[to_usize(range)].iter().map(of).collect();
+            sphere_block(&spheres)
+        });
+        blocks.collect()
+    }
+
+    fn linear(&self) -> Vec<LinearNode> {
+        let mut nodes = pages::with_capacity(self.nodes.len());
+        let placed = self.nodes.par_iter().with_min_len(CHUNK / WIDTH);
+        placed.map(Placed::linear).collect_into_vec(&mut nodes);
+        nodes
+    }
+
+    /// The further triangle blocks.
+    fn blocks(&self, p: &Primitives) -> Vec<TriangleBlock> {
+        let Ready { blocks, place, .. } = self.ready;
+        let mut further = pages::with_capacity(self.triangles.len());
+        let ranges = self.triangles.par_iter().with_min_len(CHUNK / BLOCK);
+        let block = |(at, range): (usize, &Range<u32>)| {
+            let items = &self.items[to_usize(range)];
+            let prim = |lane: usize| items[lane].index();
+            triangle_block(p.triangles, items.len(), prim, blocks.len() + at, place)
+        };
+        ranges.enumerate().map(block).collect_into_vec(&mut further);
+        further
     }
 }
 
@@ -202,50 +240,4 @@ impl Placed<'_> {
         }
         out
     }
-}
-
-/// The triangle block of these items, whose places it notes.
-fn triangle_block(p: &Primitives, items: &[Item], at: usize, place: &[AtomicU32]) -> TriangleBlock {
-    let mut block = TriangleBlock {
-        v: [[[0.0; BLOCK]; 3]; 3],
-        prim: [u32::MAX; BLOCK],
-    };
-    for lane in 0..BLOCK {
-        let vertices = match items.get(lane) {
-            Some(item) => {
-                let prim = item.index() as usize;
-                block.prim[lane] = prim as u32;
-                place[prim].store((BLOCK * at + lane) as u32, Ordering::Relaxed);
-                p.triangles[prim]
-            }
-            None => [Vec3::NAN; 3],
-        };
-        for (k, vertex) in vertices.iter().map(Vec3::to_array).enumerate() {
-            for axis in 0..3 {
-                block.v[k][axis][lane] = vertex[axis];
-            }
-        }
-    }
-    block
-}
-
-/// A block of so many spheres as there are lanes, or fewer.
-pub(super) fn sphere_block(spheres: &[SphereItem]) -> SphereBlock {
-    let mut block = SphereBlock {
-        bounds: LinearNode::EMPTY.planes.map(|p| [p[0]; SPHERES]),
-        center: [[0.0; SPHERES]; 3],
-        radius: [0.0; SPHERES],
-        prim: [u32::MAX; SPHERES],
-    };
-    for (lane, s) in spheres.iter().enumerate() {
-        let bounds = sphere_bounds(s.center, s.radius);
-        for axis in 0..3 {
-            block.bounds[axis][lane] = bounds.min[axis];
-            block.bounds[axis + 3][lane] = bounds.max[axis];
-            block.center[axis][lane] = s.center[axis];
-        }
-        block.radius[lane] = s.radius;
-        block.prim[lane] = s.prim;
-    }
-    block
 }

@@ -3,10 +3,16 @@
 //! Two lives, two types: while it grows, the tree is made of `BuildNode`s over ranges of items; what rays
 //! walk is [`LinearNode`](crate::flat::LinearNode)s. Deterministic, whatever the number of threads.
 //!
-//! Deliberately absent: spatial splits, refitting, and any knowledge of rays.
+//! Three steps: `item` makes a box and a name of every primitive (in the fast mode `morton` makes blocks of the
+//! triangles first), `tree` partitions them top down, `linear` writes nodes and blocks down.
+//!
+//! Deliberately absent: refitting, any knowledge of rays, and spatial splits: those of Embree's builder took 3 to 8 times
+//! the time on five meshes, a soup of thin triangles among them, and made rays 15 % slower to 8 % faster.
 
+mod blocks;
 mod item;
 mod linear;
+mod morton;
 mod partition;
 mod split;
 mod tree;
@@ -14,9 +20,10 @@ pub mod validate;
 
 use crate::flat::{BLOCK, Bvh, SphereBlock, Triangles};
 use crate::math::{Aabb, Vec3};
+use blocks::Ready;
 use std::ops::Range;
 
-/// Lanes of a block of spheres.
+/// Lanes of a [`SphereBlock`].
 const SPHERES: usize = BLOCK;
 
 /// Items that one thread handles at a time where a range is shared by several: 512 KiB of them, which a second-level
@@ -39,6 +46,17 @@ pub enum Accel {
     /// The tree.
     #[default]
     Bvh,
+}
+
+/// How well a tree is built. The picture is the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Quality {
+    /// By the surface area heuristic throughout.
+    #[default]
+    Good,
+    /// Blocks of triangles along the Morton curve, and the heuristic above them: a third of the time, for which rays
+    /// visit a fifth more nodes and blocks. For what is built anew for every frame, or seen by few rays.
+    Fast,
 }
 
 /// A sphere for the tree or for the loop, scene units.
@@ -80,13 +98,25 @@ pub struct Built {
     pub cost: f32,
 }
 
-/// Builds the tree over `p`, or less of it.
+/// Builds the tree over `p`, or less of it, as well as is worth it.
 ///
 /// Any input is fine: none, one, a million equal ones. A primitive with a coordinate that is not finite gets an empty
 /// box: it is stored, and never hit.
 #[must_use]
 pub fn build(p: &Primitives, accel: Accel) -> Built {
-    let mut items = item::items_of(p);
+    build_with(p, accel, Quality::Good)
+}
+
+/// As [`build`], with a choice of how well.
+#[must_use]
+pub fn build_with(p: &Primitives, accel: Accel, quality: Quality) -> Built {
+    let fast = (accel, quality) == (Accel::Bvh, Quality::Fast);
+    let (ready, mut items) = if fast {
+        morton::runs(p.triangles)
+    } else {
+        (Ready::new(p.triangles.len()), item::triangles(p))
+    };
+    items.extend(item::others(p));
     let root = match accel {
         Accel::Bvh => tree::grow(&mut items),
         Accel::Box if !p.groups.is_empty() => tree::over_kinds(&items, p.groups),
@@ -95,13 +125,13 @@ pub fn build(p: &Primitives, accel: Accel) -> Built {
             tree::over_kinds(&items, &all.collect::<Vec<_>>())
         }
     };
-    linear::linearize(p, &items, root)
+    linear::linearize(p, &items, root, ready)
 }
 
 /// Spheres in the order given, eight to a block, the last one padded.
 #[must_use]
 pub fn sphere_blocks(spheres: &[SphereItem]) -> Vec<SphereBlock> {
-    spheres.chunks(SPHERES).map(linear::sphere_block).collect()
+    spheres.chunks(SPHERES).map(blocks::sphere_block).collect()
 }
 
 /// The f32 box of a sphere, rounded outward; empty if something is not finite.
@@ -128,16 +158,6 @@ fn round_down(x: f64) -> f32 {
 fn finite_or_empty(b: Aabb) -> Aabb {
     if b.min.is_finite() && b.max.is_finite() {
         b
-    } else {
-        Aabb::EMPTY
-    }
-}
-
-/// The box of a triangle; empty if something is not finite.
-fn triangle_bounds(v: &[Vec3; 3]) -> Aabb {
-    // Minima drop NaN: ask for it first.
-    if v.iter().all(|v| v.is_finite()) {
-        Aabb::point(v[0]).with(v[1]).with(v[2])
     } else {
         Aabb::EMPTY
     }

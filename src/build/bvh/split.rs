@@ -11,8 +11,9 @@ use crate::flat::BLOCK;
 use glam::Vec4;
 use rayon::prelude::*;
 
-/// Cost of an inner node in block tests. A node step is a box test and the choice of the next child; a block test is
-/// eight watertight triangles, about twice the work, but a node is shared by up to eight children.
+/// Cost of an inner node in block tests. A node step is about as much work as a block test, but a node is shared by up to
+/// eight children. Counted: from 0.2 to 0.6 nodes and blocks are the same within 3 % (thin soup: 7 %); at 0.8 a scanned
+/// mesh's rays test half as many blocks again for 3 % fewer nodes.
 pub(super) const NODE_COST: f32 = 0.4;
 
 /// Bins per axis, for ranges of at least [`MANY`] items and for smaller ones. Powers of two.
@@ -53,12 +54,22 @@ pub(super) struct Grid {
 impl Grid {
     fn new(extent: &Extent, bins: usize) -> Grid {
         let size = extent.centers.max - extent.centers.min;
+        Grid::over(extent.centers.min, size, bins)
+    }
+
+    /// With as many bins on the longest axis, and of the same size on the others.
+    pub(super) fn cubic(centers: &Bounds, bins: usize) -> Grid {
+        let size = (centers.max - centers.min).truncate().max_element();
+        Grid::over(centers.min, Vec4::splat(size), bins)
+    }
+
+    fn over(low: Vec4, size: Vec4, bins: usize) -> Grid {
         let scale = |size: f32| {
             let scale = bins as f32 / size;
             if scale.is_finite() { scale } else { 0.0 }
         };
         Grid {
-            low: extent.centers.min,
+            low,
             scale: Vec4::new(scale(size.x), scale(size.y), scale(size.z), 0.0),
         }
     }
@@ -68,6 +79,15 @@ impl Grid {
     pub(super) fn place(&self, center: Vec4) -> Vec4 {
         // Half a bin less, so that the nearest is the one below.
         (center - self.low) * self.scale - Vec4::splat(0.5) + Vec4::splat(ROUND)
+    }
+
+    /// The bins of a centre, of `N`, a power of two.
+    #[inline]
+    pub(super) fn bins_of<const N: usize>(&self, center: Vec4) -> [usize; 3] {
+        let (first, last) = (ROUND, ROUND + (N - 1) as f32);
+        let place = self.place(center);
+        let place = place.max(Vec4::splat(first)).min(Vec4::splat(last));
+        [place.x, place.y, place.z].map(|x| x.to_bits() as usize % N)
     }
 
     /// The cut in front of a bin, which is not the first.
@@ -88,7 +108,7 @@ fn units_of(items: &[Item], kinds: Kinds) -> u32 {
     if kinds == Kinds::TRIANGLE || kinds == Kinds::SPHERE {
         items.len() as u32
     } else {
-        items.iter().map(|i| i.units()).sum()
+        items.iter().map(Item::units).sum()
     }
 }
 
@@ -102,7 +122,7 @@ pub(super) fn choose(items: &[Item], extent: &Extent) -> Option<Cut> {
     if all <= MIN_LEAF {
         return Some(Cut::Kind);
     }
-    let leaf = if all <= MAX_LEAF && !mixed {
+    let leaf = if all <= MAX_LEAF && !mixed && extent.kinds != Kinds::READY {
         blocks(all)
     } else {
         f32::INFINITY
@@ -155,22 +175,14 @@ impl<const N: usize> Bins<N> {
         let mut bins = Bins::EMPTY;
         let (front, back) = items.split_at(items.len() / 2);
         for (a, b) in front.iter().zip(back) {
-            let (at_a, at_b) = (Self::bins_of(a, grid), Self::bins_of(b, grid));
+            let (at_a, at_b) = (grid.bins_of::<N>(a.center()), grid.bins_of::<N>(b.center()));
             bins.add(a, at_a);
             bins.add(b, at_b);
         }
         for item in &back[front.len()..] {
-            bins.add(item, Self::bins_of(item, grid));
+            bins.add(item, grid.bins_of::<N>(item.center()));
         }
         bins
-    }
-
-    #[inline]
-    fn bins_of(item: &Item, grid: &Grid) -> [usize; 3] {
-        let (first, last) = (ROUND, ROUND + (N - 1) as f32);
-        let place = grid.place(item.center());
-        let place = place.max(Vec4::splat(first)).min(Vec4::splat(last));
-        [place.x, place.y, place.z].map(|x| x.to_bits() as usize % N)
     }
 
     #[inline]

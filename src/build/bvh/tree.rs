@@ -22,6 +22,8 @@ pub(super) struct Child {
 pub(super) enum Shape {
     /// A range of the items in their final order, all of one kind.
     Leaf(Range<u32>),
+    /// A block of triangles that is there already.
+    Block(u32),
     /// A node of the same grove.
     Node(u32),
     /// The first node of a grove within this one.
@@ -41,9 +43,9 @@ pub(super) struct Grove {
 
 /// Inner levels that the surface area heuristic may shape. Below, every node splits its largest part at the median
 /// until there are eight: a level then divides the number of items by eight, so that 2³² of them fall to single
-/// items within 11 levels, and a leaf of mixed kinds takes one more: 12 ≤ `MAX_DEPTH − SAH_DEPTH`.
+/// items within 11 levels; a leaf of mixed kinds takes one more, a ready node another: 13 ≤ `MAX_DEPTH − SAH_DEPTH`.
 const SAH_DEPTH: usize = 32;
-const _: () = assert!(MAX_DEPTH - SAH_DEPTH >= 12);
+const _: () = assert!(MAX_DEPTH - SAH_DEPTH >= 13);
 
 /// Partitions the items and returns the root over them with what is below it, or nothing over none.
 pub(super) fn grow(items: &mut [Item]) -> Option<(Child, Grove)> {
@@ -138,15 +140,15 @@ impl<'a> Part<'a> {
         }
     }
 
-    /// How much it wants to be split before others: by area, or below [`SAH_DEPTH`] by count. Nothing for a leaf.
-    fn urgency(&self, depth: usize) -> Option<f32> {
-        self.cut.is_some().then(|| {
-            if depth < SAH_DEPTH {
-                self.extent.bounds.half_area()
-            } else {
-                self.items.len() as f32
-            }
-        })
+    /// How much it wants to be split before others: by area, then by count; below [`SAH_DEPTH`] by count alone.
+    /// Nothing for a leaf.
+    fn urgency(&self, depth: usize) -> Option<(f32, usize)> {
+        let area = if depth < SAH_DEPTH {
+            self.extent.bounds.half_area()
+        } else {
+            0.0
+        };
+        self.cut.is_some().then_some((area, self.items.len()))
     }
 
     fn split(self, cut: Cut, depth: usize) -> [Part<'a>; 2] {
@@ -213,7 +215,7 @@ impl<'a> Part<'a> {
             let urgency = |i: usize| Some((i, parts[i].as_ref()?.urgency(depth)?));
             let most = (0..len)
                 .filter_map(urgency)
-                .max_by(|a, b| a.1.total_cmp(&b.1));
+                .max_by(|(_, a), (_, b)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             if let Some((i, _)) = most
                 && let Some(mut part) = parts[i].take()
                 && let Some(cut) = part.cut.take()

@@ -1,11 +1,11 @@
 //! What a built tree promises, checked: for tests.
 
-use super::{Built, Primitives, sphere_bounds, triangle_bounds};
+use super::{Built, Primitives, sphere_bounds};
 use crate::flat::bvh::{Child, MAX_DEPTH, WIDTH, kind};
-use crate::math::Aabb;
+use crate::math::{Aabb, Vec3};
 
 /// Checks that every box contains its children and its primitives, that every primitive is there once, that children
-/// follow their parents and that no path is longer than [`MAX_DEPTH`].
+/// follow their parents, side by side, and that no path is longer than [`MAX_DEPTH`].
 ///
 /// # Errors
 /// The first broken promise, in words.
@@ -69,6 +69,7 @@ impl Walk<'_> {
     fn inner(&mut self, at: usize, bounds: &Aabb, depth: u32) -> Result<(), String> {
         self.deepest = self.deepest.max(depth + 1);
         let node = self.built.bvh.nodes[at];
+        let mut beside = None;
         for slot in 0..WIDTH {
             let child = Child(node.child[slot]);
             if child == Child::inner(0) {
@@ -76,6 +77,12 @@ impl Walk<'_> {
             }
             if child.kind() == kind::INNER && child.index() <= at {
                 return Err(format!("node {at} has child {}", child.index()));
+            }
+            if child.kind() == kind::INNER {
+                if beside.is_some_and(|last| node.child[slot] != last + 1) {
+                    return Err(format!("inner children of node {at} are apart"));
+                }
+                beside = Some(node.child[slot]);
             }
             let own = node.child_box(slot);
             inside(bounds, &own, "child box")?;
@@ -122,5 +129,15 @@ fn inside(outer: &Aabb, inner: &Aabb, what: &str) -> Result<(), String> {
         Ok(())
     } else {
         Err(format!("{what} {inner:?} is outside {outer:?}"))
+    }
+}
+
+/// The box of a triangle; empty if something is not finite.
+fn triangle_bounds(v: &[Vec3; 3]) -> Aabb {
+    // Minima drop NaN: ask for it first.
+    if v.iter().all(|v| v.is_finite()) {
+        Aabb::point(v[0]).with(v[1]).with(v[2])
+    } else {
+        Aabb::EMPTY
     }
 }

@@ -2,7 +2,6 @@
 //! through the tree. Everything here is inlined into an entry of `super::entries`.
 
 use super::bound;
-use super::ray::WalkRay;
 use super::sphere::WideRay;
 use super::stream::{self, Scratch, Sink};
 use super::walk::{Best, EMPTY_STACK, LocalTrees, NoInstances, Tree};

@@ -14,7 +14,7 @@ use super::batch::load3;
 use super::ray::{Setup, WalkRay};
 use super::walk::{self, Best, InstanceLeaves, Tree};
 use crate::flat::bvh::{STACK, WIDTH, kind};
-use crate::flat::{BLOCK, Child, LinearNode, TriangleBlock};
+use crate::flat::{Child, LinearNode, TriangleBlock};
 use crate::math::lanes::Lanes;
 use crate::trace::Rays;
 
