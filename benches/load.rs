@@ -3,7 +3,7 @@
 //! `cargo bench --bench load`. The files are written to a temporary folder and go with it. Processor time is that of all
 //! threads, system included, as Linux counts it; elsewhere only the time on the wall is told.
 
-use luxel::build::{Accel, BuildOptions, SceneBuilder};
+use luxel::build::{Accel, BuildOptions, Quality, SceneBuilder};
 use luxel::flat::{Fresnel, PixelFilter};
 use std::error::Error;
 use std::fmt::Write;
@@ -130,6 +130,7 @@ fn load(path: &Path) -> Result<(), Box<dyn Error>> {
     let options = BuildOptions {
         // No tree: what is timed ends with the arrays that one is built over.
         accel: Accel::Brute,
+        quality: Quality::Good,
         size: (64, 64),
         filter: PixelFilter::Box,
         background: [1.0; 3],

@@ -110,6 +110,7 @@ fn help_shows_what_exists_and_how() {
         "--threads",
         "--isa",
         "--accel",
+        "--tree",
         "--tile",
         "--aov",
         "--nee",
@@ -287,11 +288,12 @@ fn a_scene_is_never_written_over() {
 fn equal_renders_are_equal_files() {
     let folder = Folder::new("equal");
     let aovs = "albedo,normal,geonormal,depth,uv,prim,entity,samples,stderr";
-    let variants: [&[&str]; 4] = [
+    let variants: [&[&str]; 5] = [
         &["--threads", "1", "--tile", "32"],
         &["--threads", "2", "--tile", "7"],
         &["--threads", "5", "--tile", "64", "--accel", "brute"],
         &["--isa", "scalar", "--accel", "box"],
+        &["--tree", "fast"],
     ];
     for (i, flags) in variants.iter().enumerate() {
         let (png, exr) = (format!("{i}.png"), format!("{i}.exr"));

@@ -4,7 +4,7 @@
 
 use glam::{DVec3, Vec3};
 use luxel::asset::AssetStore;
-use luxel::build::{Accel, BuildOptions, BuildTimes, SceneBuilder, buffer_bytes};
+use luxel::build::{Accel, BuildOptions, BuildTimes, Quality, SceneBuilder, buffer_bytes};
 use luxel::flat::{FlatScene, Fresnel, PixelFilter, Rebase, Scatter};
 use luxel::world::{self, AuthoringIndex, Name, Pose, Spawned};
 use std::path::{Path, PathBuf};
@@ -18,6 +18,7 @@ f 1/1 3/2 2/3\nf 1/4 2/2 4/3\nf 1/1 4/4 3/2\nf 2/3 3/1 4/4\n";
 fn options() -> BuildOptions {
     BuildOptions {
         accel: Accel::Bvh,
+        quality: Quality::Good,
         size: (64, 48),
         filter: PixelFilter::Box,
         background: [0.0; 3],

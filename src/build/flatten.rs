@@ -1,6 +1,6 @@
 //! Flatten: extracted items into the arrays of a frame, up to its tree.
 
-use super::bvh::{Accel, Primitives, SphereItem};
+use super::bvh::{Accel, Primitives, Quality, SphereItem};
 use super::extract::{Extracted, MeshItem};
 use super::instances::{instance, maps};
 use super::lights::{self, Collector};
@@ -62,6 +62,7 @@ pub(crate) struct Context<'a> {
     pub(crate) store: &'a AssetStore,
     pub(crate) rebase: Rebase,
     pub(crate) accel: Accel,
+    pub(crate) quality: Quality,
     pub(crate) fresnel: Fresnel,
     /// What is kept of every mesh.
     pub(crate) keep: Keep,
@@ -263,7 +264,7 @@ impl Cache {
         }
         let mesh = context.store.mesh(item.mesh);
         let normals = self.normals(item, context.store);
-        let local = Arc::new(LocalMesh::new(mesh, normals, context.keep, context.accel));
+        let local = Arc::new(LocalMesh::new(mesh, normals, context));
         self.local.insert(item.key(), local.clone());
         local
     }

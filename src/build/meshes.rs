@@ -1,5 +1,6 @@
 //! Meshes to triangles: flattened into scene units, or kept in local units for their instances.
 
+use super::flatten::Context;
 use super::rebase::{self, to_local};
 use crate::asset::normals::smooth;
 use crate::asset::{Mesh, MeshId, PerCorner};
@@ -159,8 +160,7 @@ impl LocalMesh {
     pub(crate) fn new(
         mesh: &Mesh,
         normals: Option<&PerCorner<DVec3>>,
-        keep: Keep,
-        accel: super::Accel,
+        context: &Context,
     ) -> LocalMesh {
         let rebase = rebase::of_mesh(mesh);
         let mut soup = Soup::default();
@@ -170,7 +170,7 @@ impl LocalMesh {
             to: to_local(&rebase),
             keep: Keep {
                 normals: normals.is_some(),
-                ..keep
+                ..context.keep
             },
         };
         soup.append(&part, None, |prim| slot(mesh, prim) as u32);
@@ -185,7 +185,7 @@ impl LocalMesh {
             triangles: &soup.triangles,
             ..Default::default()
         };
-        let built = super::bvh::build(&primitives, accel);
+        let built = super::bvh::build_with(&primitives, context.accel, context.quality);
         LocalMesh {
             geometry: std::sync::Arc::new(flat::Geometry {
                 triangles: built.triangles,

@@ -20,7 +20,7 @@ mod needs;
 mod rebase;
 mod spheres;
 
-pub use bvh::Accel;
+pub use bvh::{Accel, Quality};
 pub use bytes::{BufferBytes, buffer_bytes};
 
 use crate::asset::AssetStore;
@@ -39,6 +39,8 @@ use std::time::{Duration, Instant};
 pub struct BuildOptions {
     /// How much of a tree.
     pub accel: Accel,
+    /// How well trees are built: the scene's in every frame, those of local geometries once.
+    pub quality: Quality,
     /// Image width and height in pixels.
     pub size: (u32, u32),
     /// Pixel filter.
@@ -103,6 +105,7 @@ impl SceneBuilder {
             store: &self.store,
             rebase: self.rebase,
             accel: self.options.accel,
+            quality: self.options.quality,
             fresnel: self.options.fresnel,
             keep: self.keep,
         };
@@ -110,7 +113,8 @@ impl SceneBuilder {
         let flattening = start.elapsed() - extracting - flat.local_trees;
 
         let start = Instant::now();
-        let built = bvh::build(&flat.primitives(), self.options.accel);
+        let BuildOptions { accel, quality, .. } = self.options;
+        let built = bvh::build_with(&flat.primitives(), accel, quality);
         let tree = start.elapsed() + flat.local_trees;
 
         let (pose, camera) = &extracted.camera;

@@ -65,6 +65,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
         files,
         write: writing.elapsed(),
         isa: isa(args).level().to_string(),
+        tree: args.tree.name(),
     };
     tell(args, &output, &account)
 }
@@ -118,6 +119,7 @@ fn settings(args: &RenderArgs, desc: &SceneDesc) -> Settings {
         threads: args.threads.map(usize::from),
         tile: args.tile,
         accel: args.accel.into(),
+        quality: args.tree.into(),
         trace: TraceOptions {
             max_bounces: args.bounces.unwrap_or(defaults.trace.max_bounces),
             seed: args.seed,

@@ -23,6 +23,8 @@ pub(crate) struct Account<'a> {
     pub(crate) write: Duration,
     /// The kernels' instruction set.
     pub(crate) isa: String,
+    /// How well the tree was built.
+    pub(crate) tree: &'static str,
 }
 
 impl Account<'_> {
@@ -58,6 +60,7 @@ impl Account<'_> {
             "stopped": stats.stopped,
             "threads": stats.threads,
             "isa": self.isa,
+            "tree": self.tree,
             "rays": { "closest": stats.closest_rays, "occlusion": stats.occlusion_rays },
             "mrays_per_second": stats.mrays_per_second(),
             "bytes": { "files": self.files, "buffers": stats.bytes },

@@ -134,6 +134,7 @@ impl Renderer {
 fn build_options(desc: &SceneDesc, settings: &Settings) -> BuildOptions {
     BuildOptions {
         accel: settings.accel,
+        quality: settings.quality,
         size: settings.size,
         filter: match desc.render.filter {
             FilterDesc::Box => PixelFilter::Box,

@@ -1,11 +1,11 @@
 //! What a frame is rendered with.
 
-use crate::build::Accel;
+use crate::build::{Accel, Quality};
 use crate::scene::SceneDesc;
 use crate::trace::TraceOptions;
 use std::time::Duration;
 
-/// Settings of a render. Threads, tile, accel and the instruction set change no bit of the image.
+/// Settings of a render. Threads, tile, accel, quality and the instruction set change no bit of the image.
 #[derive(Clone, Debug)]
 pub struct Settings {
     /// Width and height in pixels, each at least 1.
@@ -20,6 +20,8 @@ pub struct Settings {
     pub tile: u32,
     /// How much of a tree is built.
     pub accel: Accel,
+    /// How well trees are built.
+    pub quality: Quality,
     /// Dials of tracing.
     pub trace: TraceOptions,
 }
@@ -38,6 +40,7 @@ impl Settings {
             threads: None,
             tile: Settings::DEFAULT_TILE,
             accel: Accel::default(),
+            quality: Quality::default(),
             trace: TraceOptions {
                 max_bounces: desc.render.max_bounces,
                 ..TraceOptions::default()

@@ -3,7 +3,7 @@
 use crate::reference::{self, Estimator};
 use crate::stats::Picture;
 use luxel::asset::AssetStore;
-use luxel::build::Accel;
+use luxel::build::{Accel, Quality};
 use luxel::flat::FlatScene;
 use luxel::render::{Renderer, Settings};
 use luxel::scene::SceneDesc;
@@ -109,6 +109,7 @@ impl Stage {
             threads: Some(1),
             tile: Settings::DEFAULT_TILE,
             accel,
+            quality: Quality::Good,
             trace: *options,
         };
         let renderer = Renderer::new(&desc, spawned.world, &spawned.assets, settings);
