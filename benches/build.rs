@@ -153,21 +153,20 @@ fn walk(built: &Built, [origin, dir]: [Vec3; 2]) -> [usize; 2] {
     let mut counts = [0; 2];
     let mut closest = f32::INFINITY;
     let mut stack = Vec::with_capacity(STACK);
-    stack.push((0.0, built.bvh.root, built.bvh.root_kind));
-    while let Some((near, child, tagged)) = stack.pop() {
+    stack.push((0.0, built.bvh.root));
+    while let Some((near, child)) = stack.pop() {
         if near > closest {
             continue;
         }
-        let run = child..child + (tagged & !kind::MASK);
-        if tagged & kind::MASK == kind::TRIANGLES {
-            counts[1] += run.len();
-            for block in &built.triangles.blocks[run.start as usize..run.end as usize] {
+        if child.kind() == kind::TRIANGLES {
+            counts[1] += child.len();
+            for block in &built.triangles.blocks[child.index()..][..child.len()] {
                 closest = (0..BLOCK).fold(closest, |t, lane| t.min(hit(block, lane, origin, dir)));
             }
             continue;
         }
         counts[0] += 1;
-        let node = &built.bvh.nodes[child as usize];
+        let node = &built.bvh.nodes[child.index()];
         let first = stack.len();
         for slot in 0..WIDTH {
             let b = node.child_box(slot);
@@ -175,7 +174,7 @@ fn walk(built: &Built, [origin, dir]: [Vec3; 2]) -> [usize; 2] {
             let (a, b) = ((b.min - origin) / dir, (b.max - origin) / dir);
             let (near, far) = (a.min(b).max_element().max(0.0), a.max(b).min_element());
             if !empty && near <= far && near <= closest {
-                stack.push((near, node.child[slot], node.kind[slot]));
+                stack.push((near, Child(node.child[slot])));
             }
         }
         stack[first..].sort_by(|a, b| b.0.total_cmp(&a.0));

@@ -62,7 +62,7 @@ const RULES: &[Rule] = &[
         &[
             "render", "world", "build", "trace", "flat", "film", "scene", "asset", "math",
         ],
-        &["exr", "png", "thiserror"],
+        &["exr", "nix", "png", "thiserror"],
     ),
     (
         "cli",
@@ -100,6 +100,7 @@ const CRATES: &[&str] = &[
     "indicatif",
     "libc",
     "memchr",
+    "nix",
     "png",
     "rayon",
     "ron",

@@ -1,6 +1,7 @@
 //! The arguments. Every number is checked here, with its range in the message.
 
 use super::author_args::{ConvertArgs, TurntableArgs};
+use super::bench_args::BenchArgs;
 use crate::build::{Accel, Quality};
 use crate::film::Aov;
 use crate::scene::RenderDesc;
@@ -25,8 +26,9 @@ Examples:
   luxel turntable cat.obj                          a mesh from all sides: cat.gif
   luxel explain room.ron                           what the scene makes luxel do
   luxel compare quick.exr reference.exr            how wrong a picture is
+  luxel bench                                      how fast rays are traced, and why
 
-Exit codes: 0 done, 1 images differ by more than --max, 2 usage, 65 bad scene or image, 66 missing file, 70 bug, 74 i/o, 130 stopped"
+Exit codes: 0 done, 1 images differ by more than --max (bench: the arms' hits do), 2 usage, 65 bad scene or image, 66 missing file, 70 bug, 74 i/o, 130 stopped"
 )]
 pub(crate) struct Cli {
     /// What to do.
@@ -49,6 +51,8 @@ pub(crate) enum Command {
     Explain(InspectArgs),
     /// Measure how far an image is from its reference: RMSE, relMSE, PSNR, bias, FLIP
     Compare(CompareArgs),
+    /// Measure traversal: layouts, instruction sets, trees, rays, on generated meshes or yours
+    Bench(Box<BenchArgs>),
 }
 
 /// `luxel render`.
@@ -368,7 +372,7 @@ pub(super) fn parse_size(text: &str) -> Result<(u32, u32), String> {
     Ok((width, height))
 }
 
-fn parse_time(text: &str) -> Result<Duration, String> {
+pub(super) fn parse_time(text: &str) -> Result<Duration, String> {
     const REMEDY: &str = "write a number above 0 with its unit, e.g. 30s, 2m, 500ms, 1.5h";
     // Longer than any render, and still a valid deadline.
     const MAX_SECONDS: f64 = 366.0 * 86400.0;
@@ -424,7 +428,7 @@ fn parse_ppd(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "write a number of pixels from 10 to 1000, e.g. 67".to_owned())
 }
 
-fn parse_isa(text: &str) -> Result<Isa, String> {
+pub(super) fn parse_isa(text: &str) -> Result<Isa, String> {
     let level: Level = text.parse()?;
     Isa::available(level).ok_or_else(|| {
         let have: Vec<String> = Isa::all().map(|isa| isa.level().to_string()).collect();

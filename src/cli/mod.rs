@@ -5,6 +5,8 @@
 
 mod args;
 mod author_args;
+mod bench;
+mod bench_args;
 mod check;
 mod compare;
 mod contents;
@@ -42,6 +44,7 @@ pub fn run() -> ExitCode {
         Command::Check(args) => check::run(args),
         Command::Explain(args) => explain::run(args),
         Command::Compare(args) => compare::run(args),
+        Command::Bench(args) => bench::run(args),
     };
     match done {
         Ok(()) => ExitCode::from(code::DONE),

@@ -7,6 +7,7 @@
 //! Deliberately absent: the arguments and words of `luxel compare`, the verdict on what error is too much, and any
 //! alignment, scaling or exposure that would make images more alike than they are.
 
+pub mod arms;
 pub mod bench;
 mod errors;
 pub mod flip;

@@ -124,7 +124,7 @@ fn a_million_equal_triangles_are_no_deep_tree() {
 fn everything(built: &Built) -> Vec<u32> {
     let node = |n: &LinearNode| {
         let planes = n.planes.iter().flatten().map(|x| x.to_bits());
-        planes.chain(n.child).chain(n.kind).collect::<Vec<u32>>()
+        planes.chain(n.child).collect::<Vec<u32>>()
     };
     let nodes = built.bvh.nodes.iter().flat_map(node);
     let prims = built.triangles.blocks.iter().flat_map(|b| b.prim);

@@ -50,17 +50,23 @@ impl RayKind {
     pub fn occlusion(self) -> bool {
         self == RayKind::Shadow
     }
-}
 
-impl fmt::Display for RayKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
+    /// Its name in tables and on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
             RayKind::Primary => "primary",
             RayKind::Diffuse => "diffuse",
             RayKind::Shuffled => "shuffled",
             RayKind::Shadow => "shadow",
             RayKind::Random => "random",
-        })
+        }
+    }
+}
+
+impl fmt::Display for RayKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
     }
 }
 

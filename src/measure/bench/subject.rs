@@ -5,7 +5,8 @@ use crate::build::bvh::{Built, Primitives, SphereItem};
 use crate::flat::{
     Camera, FlatScene, Geometry, Lights, Needs, PixelFilter, Rebase, Shading, Spheres,
 };
-use crate::math::{Aabb, DVec3, Vec3};
+use crate::math::{Aabb, DAffine3, DVec3, Vec3};
+use std::ops::Range;
 
 /// Longest extent of every object.
 pub const LENGTH: f64 = 10.0;
@@ -21,6 +22,9 @@ const GAP: f32 = 0.01;
 pub struct Subject {
     /// Vertices of each triangle; those of a room come last.
     pub triangles: Vec<[Vec3; 3]>,
+    /// The object's triangles and the room's: what [`Accel::Box`](crate::build::Accel::Box) puts a box around. Empty means
+    /// one group.
+    pub groups: Vec<Range<u32>>,
     /// Spheres, `prim` ascending from 0.
     pub spheres: Vec<SphereItem>,
     /// The box of the object, without its room.
@@ -70,6 +74,7 @@ impl Subject {
         Subject {
             view: View::of(&object),
             triangles,
+            groups: Vec::new(),
             spheres: Vec::new(),
             object,
         }
@@ -83,33 +88,36 @@ impl Subject {
         });
         Subject {
             triangles: Vec::new(),
+            groups: Vec::new(),
             spheres,
             object,
             view: View::of(&object),
         }
     }
 
-    /// A mesh of a user, moved to the origin and scaled to [`LENGTH`]; in f64, then rounded once. `None` if it has no
-    /// triangles or no extent.
+    /// Meshes of a user where these maps place them, together moved to the origin and scaled to [`LENGTH`]; in f64, then
+    /// rounded once. `None` if they have no triangles or no extent.
     #[must_use]
-    pub fn of_mesh(mesh: &Mesh) -> Option<Subject> {
-        let corner = |&i: &u32| mesh.positions[i as usize];
-        let (low, high) = mesh
-            .corners
-            .iter()
-            .map(corner)
-            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| {
-                (low.min(p), high.max(p))
-            });
+    pub fn of_meshes(parts: &[(&Mesh, DAffine3)]) -> Option<Subject> {
+        let corners = || {
+            parts.iter().flat_map(|&(mesh, to)| {
+                let place = move |&i: &u32| to.transform_point3(mesh.positions[i as usize]);
+                mesh.corners.iter().map(place)
+            })
+        };
+        let nothing = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let (low, high) = corners().fold(nothing, |(low, high), p| (low.min(p), high.max(p)));
         let scale = LENGTH / (high - low).max_element();
         if !scale.is_finite() || scale <= 0.0 {
             return None;
         }
         let center = low + 0.5 * (high - low);
-        let fitted = |i: &u32| ((corner(i) - center) * scale).as_vec3();
-        let triangle = |c: &[u32]| [fitted(&c[0]), fitted(&c[1]), fitted(&c[2])];
+        let fitted: Vec<Vec3> = corners()
+            .map(|p| ((p - center) * scale).as_vec3())
+            .collect();
+        let triangle = |c: &[Vec3]| [c[0], c[1], c[2]];
         Some(Subject::open(
-            mesh.corners.chunks_exact(3).map(triangle).collect(),
+            fitted.chunks_exact(3).map(triangle).collect(),
         ))
     }
 
@@ -134,7 +142,21 @@ impl Subject {
             let [a, b, c, d] = [a, b, c, d].map(corner);
             self.triangles.extend([[a, b, c], [a, c, d]]);
         }
+        let all = self.triangles.len() as u32;
+        self.groups = vec![0..all - 12, all - 12..all];
         self
+    }
+
+    /// Number of triangles and spheres.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.triangles.len() + self.spheres.len()
+    }
+
+    /// Whether there is nothing to hit.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
     }
 
     /// What a tree is built over.
@@ -142,6 +164,7 @@ impl Subject {
     pub fn primitives(&self) -> Primitives<'_> {
         Primitives {
             triangles: &self.triangles,
+            groups: &self.groups,
             spheres: &self.spheres,
             ..Primitives::default()
         }

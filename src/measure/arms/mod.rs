@@ -1,0 +1,177 @@
+//! The arms of the traversal benchmark: rivals of the product's kernels, and those kernels themselves.
+//!
+//! An arm is a tree with its primitives in some layout; the instruction set is chosen anew for every batch, so that the two
+//! vary apart. All give the same hits to the bit, since all keep the rules of [`crate::trace::kernels`].
+
+mod luxel;
+
+pub use luxel::Luxel;
+
+use crate::build::Accel;
+use crate::flat::FlatScene;
+use crate::trace::isa::Level;
+use crate::trace::{Hits, Isa, Rays};
+use std::fmt;
+use std::iter::Sum;
+use std::sync::Arc;
+
+/// Something that traces rays.
+pub trait Arm {
+    /// As [`crate::trace::closest_hit`]; `hits.err` is not compared.
+    fn closest_hit(&self, isa: Isa, rays: &Rays, hits: &mut Hits);
+    /// As [`crate::trace::occluded`].
+    fn occluded(&self, isa: Isa, rays: &Rays, out: &mut Vec<bool>);
+    /// Bytes that traversal may touch: nodes and primitives.
+    fn bytes(&self) -> usize;
+    /// What tracing these rays takes, if the arm can count.
+    fn work(&self, rays: &Rays, occlusion: bool) -> Option<Work>;
+}
+
+/// What was done for some rays.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Inner nodes whose children's boxes were tested.
+    pub nodes: u64,
+    /// Triangles or spheres that were tested.
+    pub primitives: u64,
+    /// Lanes, of eight, that were tested: those primitives and the padding.
+    pub slots: u64,
+}
+
+impl Sum for Work {
+    fn sum<I: Iterator<Item = Work>>(all: I) -> Work {
+        all.fold(Work::default(), |sum, w| Work {
+            nodes: sum.nodes + w.nodes,
+            primitives: sum.primitives + w.primitives,
+            slots: sum.slots + w.slots,
+        })
+    }
+}
+
+/// The arm of a scene that was built with [`Tree::accel`]; none where the product has no such tree.
+#[must_use]
+pub fn make(tree: Tree, layout: Layout, scene: &Arc<FlatScene>) -> Option<Box<dyn Arm>> {
+    match (tree, layout) {
+        (Tree::Bvh2, Layout::Luxel) => None,
+        (_, Layout::Structs | Layout::Gathered | Layout::Arrays | Layout::Blocks) => None,
+        (_, Layout::Luxel) => Some(Box::new(Luxel(Arc::clone(scene)))),
+    }
+}
+
+/// What is walked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Tree {
+    /// Two children a node.
+    Bvh2,
+    /// Eight children a node.
+    Bvh8,
+    /// A box around the object, all of it inside, and one around its room.
+    Box,
+    /// No tree at all.
+    Brute,
+}
+
+impl Tree {
+    /// All, the widest known first.
+    pub const ALL: [Tree; 4] = [Tree::Bvh2, Tree::Bvh8, Tree::Box, Tree::Brute];
+
+    /// What the product's builder is asked for.
+    #[must_use]
+    pub fn accel(self) -> Accel {
+        match self {
+            Tree::Bvh2 | Tree::Bvh8 => Accel::Bvh,
+            Tree::Box => Accel::Box,
+            Tree::Brute => Accel::Brute,
+        }
+    }
+
+    /// Whether every ray tests more or less every primitive.
+    #[must_use]
+    pub fn exhaustive(self) -> bool {
+        matches!(self, Tree::Box | Tree::Brute)
+    }
+
+    /// Its name in tables and on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Tree::Bvh2 => "bvh2",
+            Tree::Bvh8 => "bvh8",
+            Tree::Box => "box",
+            Tree::Brute => "brute",
+        }
+    }
+}
+
+/// How primitives lie in memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Layout {
+    /// Array of structs, one primitive tested at a time.
+    Structs,
+    /// The same array, eight primitives gathered into lanes.
+    Gathered,
+    /// An array for every coordinate.
+    Arrays,
+    /// Blocks of eight lanes for every coordinate.
+    Blocks,
+    /// The product's kernels and buffers.
+    Luxel,
+}
+
+impl Layout {
+    /// All, the plainest first.
+    pub const ALL: [Layout; 5] = [
+        Layout::Structs,
+        Layout::Gathered,
+        Layout::Arrays,
+        Layout::Blocks,
+        Layout::Luxel,
+    ];
+
+    /// Whether it has kernels of its own for this instruction set.
+    #[must_use]
+    pub fn runs_on(self, level: Level) -> bool {
+        match self {
+            Layout::Luxel => true,
+            // One lane at a time is what `Structs` does.
+            Layout::Gathered => matches!(level, Level::Sse2 | Level::Avx2),
+            _ => level != Level::Avx512,
+        }
+    }
+
+    /// The name in a sentence.
+    #[must_use]
+    pub fn title(self) -> &'static str {
+        match self {
+            Layout::Structs => "array of structs",
+            Layout::Gathered => "gathered structs",
+            Layout::Arrays => "nine arrays",
+            Layout::Blocks => "lane blocks",
+            Layout::Luxel => "luxel",
+        }
+    }
+
+    /// Its name in tables and on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Layout::Structs => "structs",
+            Layout::Gathered => "gathered",
+            Layout::Arrays => "arrays",
+            Layout::Blocks => "blocks",
+            Layout::Luxel => "luxel",
+        }
+    }
+}
+
+impl fmt::Display for Tree {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl fmt::Display for Layout {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}

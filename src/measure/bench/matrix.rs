@@ -1,0 +1,273 @@
+//! The run: every subject, every ray set, every arm, every instruction set that was asked for.
+
+use super::answers::{Answers, CHUNK, Chunk, Disagreement, NO_ANSWERS};
+use super::contender::Contender;
+use super::timing::{self, Timing, Turn};
+use super::{Generator, RayKind, RaySets, Subject};
+use crate::build::bvh::{Accel, build};
+use crate::flat::FlatScene;
+use crate::measure::arms::{self, Arm, Layout, Luxel, Tree, Work};
+use crate::trace::Isa;
+use crate::trace::isa::Level;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// What to measure.
+pub struct Plan {
+    /// What is traced.
+    pub sources: Vec<Source>,
+    /// Ray sets.
+    pub rays: Vec<RayKind>,
+    /// Trees.
+    pub trees: Vec<Tree>,
+    /// Layouts.
+    pub layouts: Vec<Layout>,
+    /// Instruction sets.
+    pub isas: Vec<Isa>,
+    /// Primary and random rays; the other sets have as many as there are hits.
+    pub count: usize,
+    /// What the run should take; it takes longer if a few passes do.
+    pub time: Duration,
+}
+
+/// A subject that need not exist yet: large ones are made one at a time.
+pub enum Source {
+    /// Made when its turn comes.
+    Generated(Generator),
+    /// A user's, with its name.
+    Given(String, Subject),
+}
+
+impl Source {
+    /// Its name in tables.
+    #[must_use]
+    pub fn name(&self) -> String {
+        match self {
+            Source::Generated(generator) => generator.to_string(),
+            Source::Given(name, _) => name.clone(),
+        }
+    }
+}
+
+/// An arm on an instruction set with a subject's ray set: a row.
+#[derive(Clone, Debug)]
+pub struct Record {
+    /// Name of the subject.
+    pub subject: String,
+    /// Its triangles and spheres.
+    pub primitives: usize,
+    /// The ray set.
+    pub rays: RayKind,
+    /// What is walked.
+    pub tree: Tree,
+    /// How primitives lie.
+    pub layout: Layout,
+    /// Instructions.
+    pub isa: Level,
+    /// Rays that were timed: all, but for arms that test every primitive a share of them, evenly spread.
+    pub timed: usize,
+    /// How often.
+    pub passes: u32,
+    /// The sum over chunks of rays of each one's shortest CPU time.
+    pub seconds: f64,
+    /// What those rays took, for arms that count.
+    pub work: Option<Work>,
+    /// Bytes of nodes and primitives, a primitive.
+    pub bytes: f64,
+    /// Building the product's tree, by the wall clock, milliseconds; rivals are derived from it.
+    pub build_ms: f64,
+    /// FNV-1a over the answers of the whole ray set, the same for every arm.
+    pub checksum: u64,
+}
+
+impl Record {
+    /// Nanoseconds a ray.
+    #[must_use]
+    pub fn ns(&self) -> f64 {
+        self.seconds * 1e9 / self.timed as f64
+    }
+
+    /// Million rays a second.
+    #[must_use]
+    pub fn mrays(&self) -> f64 {
+        1e3 / self.ns()
+    }
+}
+
+/// What is going on, for people who wait.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Stage {
+    /// Making a subject and its trees.
+    Building,
+    /// Asking all arms for their answers.
+    Checking(RayKind),
+    /// Timing.
+    Timing(RayKind),
+}
+
+/// Runs the plan. `watch` hears of every stage before it starts.
+///
+/// # Errors
+/// If an arm does not give the answers of the product.
+pub fn run(plan: Plan, mut watch: impl FnMut(&str, Stage)) -> Result<Vec<Record>, Disagreement> {
+    let deadline = Instant::now() + plan.time;
+    let mut cases = (plan.sources.len() * plan.rays.len()) as u32;
+    let mut records = Vec::new();
+    for source in plan.sources {
+        let name = source.name();
+        watch(&name, Stage::Building);
+        let subject = match source {
+            Source::Generated(generator) => generator.make(),
+            Source::Given(_, subject) => subject,
+        };
+        let bench = Bench::new(name, &subject, &plan.trees, &plan.layouts);
+        let sets = RaySets::new(&subject, &bench.product, plan.count);
+        for &kind in &plan.rays {
+            let chunks = bench.chunks(&sets, kind);
+            let turns = bench.turns(&chunks, &plan.isas);
+            watch(&bench.name, Stage::Checking(kind));
+            bench.check(&turns, kind)?;
+            watch(&bench.name, Stage::Timing(kind));
+            let now = Instant::now();
+            let until = now + deadline.saturating_duration_since(now) / cases;
+            cases -= 1;
+            let timings = timing::in_turns(&turns, until);
+            let checksum = chunks.iter().fold(NO_ANSWERS, |sum, c| c.checksum(sum));
+            let rows = turns.iter().zip(timings);
+            records.extend(rows.map(|(turn, timing)| bench.record(turn, timing, kind, checksum)));
+        }
+    }
+    Ok(records)
+}
+
+/// Tests of a primitive that an arm without a tree may do in a pass: about half a second.
+const EXHAUSTING: usize = 1 << 29;
+
+/// A subject with its arms.
+struct Bench {
+    name: String,
+    primitives: usize,
+    /// What makes the rays, and says what is right.
+    product: Arc<FlatScene>,
+    arms: Vec<Entrant>,
+}
+
+/// An arm that is ready.
+struct Entrant {
+    tree: Tree,
+    layout: Layout,
+    arm: Box<dyn Arm>,
+    build_ms: f64,
+}
+
+impl Bench {
+    fn new(name: String, subject: &Subject, trees: &[Tree], layouts: &[Layout]) -> Bench {
+        let mut arms = Vec::new();
+        let mut product = None;
+        for accel in [Accel::Bvh, Accel::Box, Accel::Brute] {
+            let of_accel = |tree: &&Tree| tree.accel() == accel;
+            let trees: Vec<Tree> = trees.iter().filter(of_accel).copied().collect();
+            if accel != Accel::Bvh && trees.is_empty() {
+                continue;
+            }
+            let start = Instant::now();
+            let built = build(&subject.primitives(), accel);
+            let build_ms = start.elapsed().as_secs_f64() * 1e3;
+            let scene = Arc::new(subject.scene(built));
+            for (&tree, &layout) in trees
+                .iter()
+                .flat_map(|t| layouts.iter().map(move |l| (t, l)))
+            {
+                arms.extend(arms::make(tree, layout, &scene).map(|arm| Entrant {
+                    tree,
+                    layout,
+                    arm,
+                    build_ms,
+                }));
+            }
+            product.get_or_insert(scene);
+        }
+        Bench {
+            name,
+            primitives: subject.len(),
+            product: product.expect("the first tree is always built"),
+            arms,
+        }
+    }
+
+    fn chunks(&self, sets: &RaySets, kind: RayKind) -> Vec<Chunk> {
+        let product = Luxel(self.product.clone());
+        let reference = Contender {
+            tree: Tree::Bvh8,
+            layout: Layout::Luxel,
+            isa: Isa::best(),
+            arm: &product,
+        };
+        Chunk::cut(sets.of(kind), kind.occlusion(), &reference)
+    }
+
+    /// Who traces what: all chunks, or some where every primitive is tested; nobody who would not finish one.
+    fn turns<'a>(&'a self, chunks: &'a [Chunk], isas: &[Isa]) -> Vec<Turn<'a>> {
+        let mut turns = Vec::new();
+        for entrant in &self.arms {
+            let affordable = match entrant.tree.exhaustive() {
+                true => EXHAUSTING / (self.primitives * CHUNK).max(1),
+                false => chunks.len(),
+            };
+            if affordable == 0 {
+                continue;
+            }
+            let step = chunks.len().div_ceil(affordable).max(1);
+            for &isa in isas
+                .iter()
+                .filter(|isa| entrant.layout.runs_on(isa.level()))
+            {
+                let contender = Contender {
+                    tree: entrant.tree,
+                    layout: entrant.layout,
+                    isa,
+                    arm: &*entrant.arm,
+                };
+                turns.push((contender, chunks.iter().step_by(step).collect()));
+            }
+        }
+        turns
+    }
+
+    fn check(&self, turns: &[Turn], kind: RayKind) -> Result<(), Disagreement> {
+        let mut answers = Answers::default();
+        for (contender, chunks) in turns {
+            for chunk in chunks {
+                chunk.trace(contender, &mut answers);
+                chunk.check(&answers).map_err(|wrong| Disagreement {
+                    arm: contender.to_string(),
+                    case: format!("{kind} rays of {}", self.name),
+                    ..wrong
+                })?;
+            }
+        }
+        Ok(())
+    }
+
+    fn record(&self, turn: &Turn, timing: Timing, rays: RayKind, checksum: u64) -> Record {
+        let (contender, chunks) = turn;
+        let same = |e: &&Entrant| e.tree == contender.tree && e.layout == contender.layout;
+        let build_ms = self.arms.iter().find(same).map_or(0.0, |e| e.build_ms);
+        let work = |chunk: &&Chunk| contender.arm.work(&chunk.rays, rays.occlusion());
+        Record {
+            subject: self.name.clone(),
+            primitives: self.primitives,
+            rays,
+            tree: contender.tree,
+            layout: contender.layout,
+            isa: contender.isa.level(),
+            timed: chunks.iter().map(|chunk| chunk.rays.len()).sum(),
+            passes: timing.passes,
+            seconds: timing.seconds,
+            work: chunks.iter().map(work).sum(),
+            bytes: contender.arm.bytes() as f64 / self.primitives as f64,
+            build_ms,
+            checksum,
+        }
+    }
+}
