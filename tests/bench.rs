@@ -2,9 +2,13 @@
 
 use luxel::build::bvh::{Accel, build};
 use luxel::flat::FlatScene;
-use luxel::measure::bench::{LENGTH, RayKind, RaySets, Subject, meshes};
+use luxel::measure::arms::{Layout, Tree};
+use luxel::measure::bench::{LENGTH, Plan, RayKind, RaySets, Record, Source, Subject, meshes, run};
 use luxel::trace::{Hits, Isa, Rays, closest_hit};
 use std::collections::BTreeMap;
+use std::fs;
+use std::process::{Command, Output};
+use std::time::Duration;
 
 fn scene(subject: &Subject) -> FlatScene {
     subject.scene(build(&subject.primitives(), Accel::Bvh))
@@ -119,5 +123,206 @@ fn no_ray_leaves_the_room() {
         closest_hit(&scene, Isa::best(), sets.of(kind), &mut hits);
         let misses = hits.prim.iter().filter(|&&prim| prim == Hits::NONE);
         assert_eq!(misses.count(), 0, "{kind}");
+    }
+}
+
+/// Everything on a small subject, as quickly as possible. Were an arm wrong, `run` would say so.
+fn all_arms(name: &str, subject: Subject) -> Vec<Record> {
+    let plan = Plan {
+        sources: vec![Source::Given(name.to_owned(), subject)],
+        rays: RayKind::ALL.to_vec(),
+        trees: Tree::ALL.to_vec(),
+        layouts: Layout::ALL.to_vec(),
+        isas: Isa::all().collect(),
+        count: 200,
+        time: Duration::ZERO,
+    };
+    run(plan, |_, _| ()).unwrap_or_else(|e| panic!("{e}"))
+}
+
+#[test]
+fn all_arms_agree() {
+    let rows = |layout: Layout| {
+        let trees = if layout == Layout::Luxel { 3 } else { 4 };
+        let isas = Isa::all().filter(|isa| layout.runs_on(isa.level())).count();
+        trees * isas * RayKind::ALL.len()
+    };
+    for (name, subject) in [
+        ("ball", meshes::ball(4)),
+        ("terrain", meshes::terrain(13)),
+        ("soup", meshes::soup(300)),
+        ("spheres", meshes::spheres(100)),
+    ] {
+        let spheres = subject.triangles.is_empty();
+        let records = all_arms(name, subject);
+        let layouts = Layout::ALL.into_iter();
+        let expected = layouts.filter(|&layout| !(spheres && layout == Layout::Gathered));
+        assert_eq!(records.len(), expected.map(rows).sum::<usize>(), "{name}");
+        for kind in RayKind::ALL {
+            let same: Vec<&Record> = records.iter().filter(|r| r.rays == kind).collect();
+            assert!(same.iter().all(|r| r.checksum == same[0].checksum));
+        }
+    }
+}
+
+#[test]
+fn work_is_that_of_the_tree() {
+    let records = all_arms("ball", meshes::ball(6));
+    let work = |tree: Tree, layout: Layout| {
+        let row = |r: &&Record| (r.tree, r.layout, r.rays) == (tree, layout, RayKind::Random);
+        let row = records.iter().find(row).expect("a row");
+        (row.work.expect("counted"), row.timed as u64)
+    };
+    let (brute, rays) = work(Tree::Brute, Layout::Arrays);
+    let triangles = 20 * 36 + 12;
+    assert_eq!([brute.nodes, brute.primitives], [0, rays * triangles]);
+    assert_eq!(brute.lanes, rays * triangles.next_multiple_of(8));
+    let (wide, _) = work(Tree::Bvh8, Layout::Blocks);
+    let (binary, _) = work(Tree::Bvh2, Layout::Blocks);
+    let (structs, _) = work(Tree::Bvh8, Layout::Structs);
+    assert_eq!(
+        (structs.nodes, structs.primitives),
+        (wide.nodes, wide.primitives)
+    );
+    assert_eq!(structs.lanes, structs.primitives);
+    assert!(wide.lanes > wide.primitives && wide.primitives < brute.primitives / 10);
+    assert!(binary.nodes > 3 * wide.nodes / 2, "{binary:?} {wide:?}");
+}
+
+/// Runs `luxel bench` in a folder that is gone afterwards, with a mesh of two triangles in it.
+fn command(name: &str, args: &[&str]) -> (Output, Vec<(String, String)>) {
+    let folder = std::env::temp_dir().join(format!("luxel-bench-{name}-{}", std::process::id()));
+    fs::create_dir_all(&folder).expect("a temporary folder");
+    let mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 1\nf 1 2 3\nf 2 4 3\n";
+    fs::write(folder.join("two.obj"), mesh).expect("writable");
+    let mut luxel = Command::new(env!("CARGO_BIN_EXE_luxel"));
+    let quick = ["bench", "--count", "300", "--time", "1ms"];
+    let output = luxel.args(quick).args(args).current_dir(&folder).output();
+    let entries = fs::read_dir(&folder).expect("there").flatten();
+    let file = |entry: fs::DirEntry| {
+        let text = fs::read_to_string(entry.path()).expect("text");
+        (entry.file_name().to_string_lossy().into_owned(), text)
+    };
+    let mut files: Vec<_> = entries.map(file).filter(|(n, _)| n != "two.obj").collect();
+    files.sort();
+    fs::remove_dir_all(&folder).expect("gone");
+    (output.expect("luxel runs"), files)
+}
+
+#[test]
+fn a_run_prints_and_writes() {
+    let args = [
+        "--size",
+        "spheres-100",
+        "--mesh",
+        "two.obj",
+        "--room",
+        "--rays",
+        "random,shadow",
+        "--accel",
+        "bvh2,bvh8",
+        "--layout",
+        "structs,blocks,luxel",
+        "--isa",
+        "scalar",
+        "--csv",
+        "all.csv",
+        "--svg",
+        "all.svg",
+    ];
+    let (output, files) = command("files", &args);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let table = String::from_utf8(output.stdout).expect("text");
+    for words in [
+        "lane blocks over array of structs, scalar",
+        "eight children over two",
+        "luxel over the fastest rival",
+        "spheres-100: 100 primitives",
+        "two: 14 primitives",
+        "bvh2  structs  scalar",
+        "bvh8  nodes a ray",
+    ] {
+        assert!(table.contains(words), "no {words} in\n{table}");
+    }
+    let [(_, csv), (_, svg)] = &files[..] else {
+        panic!("{files:?}");
+    };
+    let mut lines = csv.lines();
+    assert_eq!(
+        lines.next(),
+        Some(
+            "subject,primitives,rays,tree,layout,isa,timed_rays,passes,mrays_per_s,ns_per_ray,nodes_per_ray,\
+             primitives_per_ray,lanes_per_ray,bytes_per_primitive,build_ms,checksum"
+        )
+    );
+    // Two trees of two layouts and luxel's, twice two ray sets.
+    let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+    assert_eq!(rows.len(), 5 * 2 * 2);
+    for row in rows {
+        assert_eq!(row.len(), 16, "{row:?}");
+        let number = |i: usize| {
+            row[i]
+                .parse::<f64>()
+                .unwrap_or_else(|e| panic!("{row:?}, {i}: {e}"))
+        };
+        assert!(
+            number(8) > 0.0 && number(9) > 0.0 && number(13) > 0.0,
+            "{row:?}"
+        );
+        assert_eq!(row[10].is_empty(), row[4] == "luxel", "{row:?}");
+    }
+    assert!(svg.starts_with("<svg ") && svg.ends_with("</svg>\n"));
+    assert_eq!(svg.matches("class=\"n\"").count(), 20);
+}
+
+#[test]
+fn json_is_for_scripts() {
+    let args = [
+        "--size",
+        "spheres-100",
+        "--rays",
+        "primary",
+        "--layout",
+        "blocks",
+        "--json",
+    ];
+    let (output, _) = command("json", &args);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let rows: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let rows = rows.as_array().expect("rows");
+    assert!(!rows.is_empty());
+    for row in rows {
+        assert_eq!(row["subject"], "spheres-100");
+        assert!(row["nodes_per_ray"].as_f64() > Some(0.0), "{row}");
+    }
+}
+
+#[test]
+fn mistakes_are_told() {
+    for (args, code, word) in [
+        (&["--size", "2k"][..], 2, "possible values"),
+        (&["--room"], 2, "--mesh"),
+        (&["--isa", "mmx"], 2, "scalar, sse2"),
+        (&["--mesh", "none.obj"], 66, "none.obj"),
+        (&["--mesh", "two.stl"], 2, "two.stl"),
+        (&["--csv", "none/all.csv"], 74, "none"),
+        (
+            &[
+                "--size",
+                "spheres-100",
+                "--layout",
+                "luxel",
+                "--accel",
+                "bvh2",
+            ],
+            2,
+            "luxel",
+        ),
+    ] {
+        let (output, files) = command("mistakes", args);
+        let words = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(code), "{args:?}: {words}");
+        assert!(words.contains(word), "{args:?}: {words}");
+        assert!(files.is_empty());
     }
 }

@@ -158,7 +158,7 @@ fn json(records: &[Record]) -> serde_json::Value {
             "ns_per_ray": r.ns(),
             "nodes_per_ray": r.work.map(|w| per_ray(w.nodes)),
             "primitives_per_ray": r.work.map(|w| per_ray(w.primitives)),
-            "slots_per_ray": r.work.map(|w| per_ray(w.slots)),
+            "lanes_per_ray": r.work.map(|w| per_ray(w.lanes)),
             "bytes_per_primitive": r.bytes,
             "build_ms": r.build_ms,
             "checksum": format!("{:016x}", r.checksum),

@@ -1,6 +1,6 @@
 //! The product's own kernels as an arm.
 
-use super::{Arm, Work};
+use super::Arm;
 use crate::flat::FlatScene;
 use crate::trace::{self, Hits, Isa, Rays};
 use std::sync::Arc;
@@ -22,9 +22,5 @@ impl Arm for Luxel {
         size_of_val(&*world.bvh.nodes)
             + size_of_val(&*world.triangles.blocks)
             + size_of_val(&*self.0.spheres.blocks)
-    }
-
-    fn work(&self, _: &Rays, _: bool) -> Option<Work> {
-        None
     }
 }

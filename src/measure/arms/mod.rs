@@ -3,58 +3,64 @@
 //! An arm is a tree with its primitives in some layout; the instruction set is chosen anew for every batch, so that the two
 //! vary apart. All give the same hits to the bit, since all keep the rules of [`crate::trace::kernels`].
 
+mod entries;
+mod layouts;
 mod luxel;
+mod nodes;
+mod rival;
+mod walk;
+mod work;
 
 pub use luxel::Luxel;
+pub use work::Work;
 
 use crate::build::Accel;
 use crate::flat::FlatScene;
 use crate::trace::isa::Level;
 use crate::trace::{Hits, Isa, Rays};
+use nodes::{Binary, Wide};
 use std::fmt;
-use std::iter::Sum;
 use std::sync::Arc;
 
 /// Something that traces rays.
 pub trait Arm {
-    /// As [`crate::trace::closest_hit`]; `hits.err` is not compared.
+    /// As [`crate::trace::closest_hit`]; `hits.instance` and `hits.err` may stay as they were.
     fn closest_hit(&self, isa: Isa, rays: &Rays, hits: &mut Hits);
     /// As [`crate::trace::occluded`].
     fn occluded(&self, isa: Isa, rays: &Rays, out: &mut Vec<bool>);
     /// Bytes that traversal may touch: nodes and primitives.
     fn bytes(&self) -> usize;
-    /// What tracing these rays takes, if the arm can count.
-    fn work(&self, rays: &Rays, occlusion: bool) -> Option<Work>;
 }
 
-/// What was done for some rays.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Work {
-    /// Inner nodes whose children's boxes were tested.
-    pub nodes: u64,
-    /// Triangles or spheres that were tested.
-    pub primitives: u64,
-    /// Lanes, of eight, that were tested: those primitives and the padding.
-    pub slots: u64,
-}
-
-impl Sum for Work {
-    fn sum<I: Iterator<Item = Work>>(all: I) -> Work {
-        all.fold(Work::default(), |sum, w| Work {
-            nodes: sum.nodes + w.nodes,
-            primitives: sum.primitives + w.primitives,
-            slots: sum.slots + w.slots,
-        })
-    }
-}
-
-/// The arm of a scene that was built with [`Tree::accel`]; none where the product has no such tree.
+/// The arm of a scene that was built with [`Tree::accel`] and holds triangles or spheres, not both; none where there is
+/// none: the product has no binary tree, and spheres are not gathered.
 #[must_use]
 pub fn make(tree: Tree, layout: Layout, scene: &Arc<FlatScene>) -> Option<Box<dyn Arm>> {
     match (tree, layout) {
         (Tree::Bvh2, Layout::Luxel) => None,
-        (_, Layout::Structs | Layout::Gathered | Layout::Arrays | Layout::Blocks) => None,
         (_, Layout::Luxel) => Some(Box::new(Luxel(Arc::clone(scene)))),
+        (Tree::Bvh2, _) => rival::make::<Binary>(layout, scene),
+        _ => rival::make::<Wide>(layout, scene),
+    }
+}
+
+/// Counts the work of the rivals, which differ in their trees alone: see [`make`].
+pub struct Counter(Box<dyn rival::Count>);
+
+impl Counter {
+    /// For the rivals of a tree.
+    #[must_use]
+    pub fn new(tree: Tree, scene: &Arc<FlatScene>) -> Counter {
+        Counter(match tree {
+            Tree::Bvh2 => rival::counter::<Binary>(scene),
+            _ => rival::counter::<Wide>(scene),
+        })
+    }
+
+    /// What tracing these rays takes.
+    #[must_use]
+    pub fn count(&self, rays: &Rays, occlusion: bool) -> Work {
+        self.0.count(rays, occlusion)
     }
 }
 

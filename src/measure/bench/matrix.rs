@@ -6,7 +6,7 @@ use super::timing::{self, Timing, Turn};
 use super::{Generator, RayKind, RaySets, Subject};
 use crate::build::bvh::{Accel, build};
 use crate::flat::FlatScene;
-use crate::measure::arms::{self, Arm, Layout, Luxel, Tree, Work};
+use crate::measure::arms::{self, Arm, Counter, Layout, Luxel, Tree, Work};
 use crate::trace::Isa;
 use crate::trace::isa::Level;
 use std::sync::Arc;
@@ -133,8 +133,11 @@ pub fn run(plan: Plan, mut watch: impl FnMut(&str, Stage)) -> Result<Vec<Record>
             cases -= 1;
             let timings = timing::in_turns(&turns, until);
             let checksum = chunks.iter().fold(NO_ANSWERS, |sum, c| c.checksum(sum));
-            let rows = turns.iter().zip(timings);
-            records.extend(rows.map(|(turn, timing)| bench.record(turn, timing, kind, checksum)));
+            let work = bench.work(&turns, kind);
+            let rows = turns.iter().zip(timings).zip(work);
+            records.extend(
+                rows.map(|((turn, timing), work)| bench.record(turn, kind, timing, work, checksum)),
+            );
         }
     }
     Ok(records)
@@ -150,6 +153,8 @@ struct Bench {
     /// What makes the rays, and says what is right.
     product: Arc<FlatScene>,
     arms: Vec<Entrant>,
+    /// What counts the work of each tree's rivals.
+    counters: Vec<(Tree, Counter)>,
 }
 
 /// An arm that is ready.
@@ -162,8 +167,7 @@ struct Entrant {
 
 impl Bench {
     fn new(name: String, subject: &Subject, trees: &[Tree], layouts: &[Layout]) -> Bench {
-        let mut arms = Vec::new();
-        let mut product = None;
+        let (mut arms, mut counters, mut product) = (Vec::new(), Vec::new(), None);
         for accel in [Accel::Bvh, Accel::Box, Accel::Brute] {
             let of_accel = |tree: &&Tree| tree.accel() == accel;
             let trees: Vec<Tree> = trees.iter().filter(of_accel).copied().collect();
@@ -185,6 +189,7 @@ impl Bench {
                     build_ms,
                 }));
             }
+            counters.extend(trees.iter().map(|&tree| (tree, Counter::new(tree, &scene))));
             product.get_or_insert(scene);
         }
         Bench {
@@ -192,6 +197,7 @@ impl Bench {
             primitives: subject.len(),
             product: product.expect("the first tree is always built"),
             arms,
+            counters,
         }
     }
 
@@ -249,11 +255,40 @@ impl Bench {
         Ok(())
     }
 
-    fn record(&self, turn: &Turn, timing: Timing, rays: RayKind, checksum: u64) -> Record {
-        let (contender, chunks) = turn;
-        let same = |e: &&Entrant| e.tree == contender.tree && e.layout == contender.layout;
-        let build_ms = self.arms.iter().find(same).map_or(0.0, |e| e.build_ms);
-        let work = |chunk: &&Chunk| contender.arm.work(&chunk.rays, rays.occlusion());
+    /// What each contender did; counted once a tree, since neither layout nor instruction set changes it, but that
+    /// structs are tested without padding. The product's walk is another.
+    fn work(&self, turns: &[Turn], kind: RayKind) -> Vec<Option<Work>> {
+        let mut known: Vec<(Tree, Work)> = Vec::new();
+        let mut of_tree = |tree: Tree, chunks: &[&Chunk]| {
+            if let Some((_, work)) = known.iter().find(|(t, _)| *t == tree) {
+                return Some(*work);
+            }
+            let (_, counter) = self.counters.iter().find(|(t, _)| *t == tree)?;
+            let count = |chunk: &&Chunk| counter.count(&chunk.rays, kind.occlusion());
+            let work = chunks.iter().map(count).sum();
+            known.push((tree, work));
+            Some(work)
+        };
+        let of_turn = |(contender, chunks): &Turn| match contender.layout {
+            Layout::Luxel => None,
+            Layout::Structs => of_tree(contender.tree, chunks).map(|work| Work {
+                lanes: work.primitives,
+                ..work
+            }),
+            _ => of_tree(contender.tree, chunks),
+        };
+        turns.iter().map(of_turn).collect()
+    }
+
+    fn record(
+        &self,
+        (contender, chunks): &Turn,
+        rays: RayKind,
+        timing: Timing,
+        work: Option<Work>,
+        checksum: u64,
+    ) -> Record {
+        let same = |e: &&Entrant| (e.tree, e.layout) == (contender.tree, contender.layout);
         Record {
             subject: self.name.clone(),
             primitives: self.primitives,
@@ -264,9 +299,9 @@ impl Bench {
             timed: chunks.iter().map(|chunk| chunk.rays.len()).sum(),
             passes: timing.passes,
             seconds: timing.seconds,
-            work: chunks.iter().map(work).sum(),
+            work,
             bytes: contender.arm.bytes() as f64 / self.primitives as f64,
-            build_ms,
+            build_ms: self.arms.iter().find(same).map_or(0.0, |e| e.build_ms),
             checksum,
         }
     }

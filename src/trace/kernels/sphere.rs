@@ -10,7 +10,7 @@ use crate::math::lanes::{Lanes, WideLanes};
 
 /// Rays in f64 lanes with what costs once per ray.
 #[derive(Clone, Copy)]
-pub(super) struct WideRay<W> {
+pub(crate) struct WideRay<W> {
     origin: [W; 3],
     dir: [W; 3],
     a: W,
@@ -34,14 +34,14 @@ impl<W: WideLanes> WideRay<W> {
 
     /// One ray in all lanes.
     #[inline(always)]
-    pub(super) fn splat<L: Lanes<Wide = W>>([origin, dir]: [[f32; 3]; 2]) -> WideRay<W> {
+    pub(crate) fn splat<L: Lanes<Wide = W>>([origin, dir]: [[f32; 3]; 2]) -> WideRay<W> {
         WideRay::new::<L>(splat(origin), splat(dir))
     }
 
     /// The smallest root above 0 of each lane, rounded to f32; nothing if no lane has a root. Lanes without one hold a t
     /// that is NaN or not above 0. What rounds to 0 or to infinity is no hit: callers ask for `0 < t < limit`.
     #[inline(always)]
-    pub(super) fn root<L: Lanes<Wide = W>>(&self, center: [W; 3], radius: W) -> Option<L> {
+    pub(crate) fn root<L: Lanes<Wide = W>>(&self, center: [W; 3], radius: W) -> Option<L> {
         let oc = [
             self.origin[0] - center[0],
             self.origin[1] - center[1],

@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 /// The columns.
 const HEADER: &str = "subject,primitives,rays,tree,layout,isa,timed_rays,passes,mrays_per_s,ns_per_ray,nodes_per_ray,\
-primitives_per_ray,slots_per_ray,bytes_per_primitive,build_ms,checksum";
+primitives_per_ray,lanes_per_ray,bytes_per_primitive,build_ms,checksum";
 
 /// Comma-separated values with a header; what an arm does not count is empty.
 #[must_use]
@@ -34,7 +34,7 @@ pub fn csv(records: &[Record]) -> String {
             r.ns(),
             per_ray(|w| w.nodes),
             per_ray(|w| w.primitives),
-            per_ray(|w| w.slots),
+            per_ray(|w| w.lanes),
             r.bytes,
             r.build_ms,
             r.checksum,

@@ -95,6 +95,6 @@ fn work(text: &mut String, rows: &[&Record], kinds: &[RayKind]) {
             w.primitives
         });
         let lanes = format!("  {tree:5} lanes, {}", row.layout);
-        line(text, lanes, row, |w| w.slots);
+        line(text, lanes, row, |w| w.lanes);
     }
 }
