@@ -129,7 +129,7 @@ fn no_ray_leaves_the_room() {
 /// Everything on a small subject, as quickly as possible. Were an arm wrong, `run` would say so.
 fn all_arms(name: &str, subject: Subject) -> Vec<Record> {
     let plan = Plan {
-        sources: vec![Source::Given(name.to_owned(), subject)],
+        sources: vec![Source::Given(name.to_owned(), Box::new(subject))],
         rays: RayKind::ALL.to_vec(),
         trees: Tree::ALL.to_vec(),
         layouts: Layout::ALL.to_vec(),

@@ -118,7 +118,7 @@ fn mesh(path: &Path, args: &BenchArgs) -> Result<Source, Failure> {
         true => subject.in_room(),
         false => subject,
     };
-    Ok(Source::Given(name.into_owned(), subject))
+    Ok(Source::Given(name.into_owned(), Box::new(subject)))
 }
 
 /// Says what goes on, every two seconds at most.

@@ -18,7 +18,7 @@ Examples:
   luxel bench --mesh dragon.obj --csv dragon.csv   your mesh, for a spreadsheet
   luxel bench --size 1m --rays random --isa scalar,sse2,avx2
   luxel bench --size spheres-100 --accel bvh8,brute --layout blocks,luxel
-  luxel bench --all --svg all.svg                  everything; half an hour and 4 GB
+  luxel bench --all --svg all.svg                  everything; half an hour and more, 4 GB
 
 Layouts of primitives: structs (an array of them, one tested at a time), gathered (the same, eight gathered into lanes),
 arrays (one for every coordinate), blocks (of eight lanes), luxel (what `render` runs). Trees, leaves and rays are the
@@ -44,14 +44,14 @@ pub(crate) struct BenchArgs {
     /// Trees; box and brute test every primitive and are left out where that takes too long [default: bvh8]
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = one_of(&Tree::ALL, Tree::name))]
     pub(crate) accel: Vec<Tree>,
-    /// Instruction sets: scalar, sse2, avx2, avx512 (luxel only) [default: scalar and the best of this machine]
+    /// Instruction sets: scalar, sse2, avx2, avx512 (luxel only) [default: all but sse2]
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = parse_isa)]
     pub(crate) isa: Vec<Isa>,
     /// Everything above that is not named
     #[arg(long)]
     pub(crate) all: bool,
     /// Primary and random rays; the other sets have as many as hit something
-    #[arg(long, value_name = "N", default_value_t = 1 << 18, value_parser = value_parser!(u32).range(1..=1 << 24))]
+    #[arg(long, value_name = "N", default_value_t = 1 << 17, value_parser = value_parser!(u32).range(1..=1 << 24))]
     pub(crate) count: u32,
     /// What the run should take; three passes are made in any case
     #[arg(long, value_name = "TIME", default_value = "45s", value_parser = parse_time)]

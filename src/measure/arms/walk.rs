@@ -16,6 +16,23 @@ pub(super) enum Answers<'a> {
     Occluded(&'a mut [bool]),
 }
 
+/// A ray in the lanes that boxes are tested in, and in those of primitives.
+struct Ray<B, T> {
+    boxes: WalkRay<B>,
+    tested: WalkRay<T>,
+}
+
+impl<B: Lanes, T: Lanes> Ray<B, T> {
+    /// Nothing for a ray that cannot hit.
+    #[inline(always)]
+    fn new(origin: [f32; 3], dir: [f32; 3]) -> Option<Ray<B, T>> {
+        Some(Ray {
+            boxes: WalkRay::new(origin, dir)?,
+            tested: WalkRay::new(origin, dir)?,
+        })
+    }
+}
+
 /// Traces a batch.
 #[inline(always)]
 pub(super) fn batch<L: Lanes, N: Node, P: Primitives>(
@@ -34,11 +51,9 @@ pub(super) fn batch<L: Lanes, N: Node, P: Primitives>(
         let mut best = Best::below(limit(t_max, any));
         let mut found = false;
         if t_max > 0.0
-            && let Some(boxes) = WalkRay::<N::Boxes<L>>::new(origin, dir)
-            && let Some(tested) = WalkRay::<P::Tested<L>>::new(origin, dir)
+            && let Some(ray) = Ray::new(origin, dir)
         {
-            let ray = (&boxes, &tested);
-            found = walk::<L, N, P>(tree, primitives, ray, any, &mut stack, &mut best, watch);
+            found = walk::<L, N, P>(tree, primitives, &ray, any, &mut stack, &mut best, watch);
         }
         match &mut answers {
             Answers::Occluded(out) => out[i] = found,
@@ -68,7 +83,7 @@ fn limit(t_max: f32, any: bool) -> f32 {
 fn walk<L: Lanes, N: Node, P: Primitives>(
     tree: &Tree<N>,
     primitives: &P,
-    (boxes, tested): (&WalkRay<N::Boxes<L>>, &WalkRay<P::Tested<L>>),
+    ray: &Ray<N::Boxes<L>, P::Tested<L>>,
     any: bool,
     stack: &mut Stack,
     best: &mut Best,
@@ -84,13 +99,13 @@ fn walk<L: Lanes, N: Node, P: Primitives>(
         if child.slots == 0 {
             watch.node();
             let node = &tree.nodes[child.first as usize];
-            if let Some(nearest) = node.enter::<L>(boxes, cull, stack) {
+            if let Some(nearest) = node.enter::<L>(&ray.boxes, cull, stack) {
                 child = nearest;
                 continue;
             }
         } else {
             watch.leaf(|| primitives.count(child), child.slots);
-            if primitives.test::<L>(child, tested, any, best) {
+            if primitives.test::<L>(child, &ray.tested, any, best) {
                 return true;
             }
         }

@@ -3,107 +3,13 @@
 use super::answers::{Answers, CHUNK, Chunk, Disagreement, NO_ANSWERS};
 use super::contender::Contender;
 use super::timing::{self, Timing, Turn};
-use super::{Generator, RayKind, RaySets, Subject};
+use super::{Plan, RayKind, RaySets, Record, Source, Stage, Subject};
 use crate::build::bvh::{Accel, build};
 use crate::flat::FlatScene;
 use crate::measure::arms::{self, Arm, Counter, Layout, Luxel, Tree, Work};
 use crate::trace::Isa;
-use crate::trace::isa::Level;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
-
-/// What to measure.
-pub struct Plan {
-    /// What is traced.
-    pub sources: Vec<Source>,
-    /// Ray sets.
-    pub rays: Vec<RayKind>,
-    /// Trees.
-    pub trees: Vec<Tree>,
-    /// Layouts.
-    pub layouts: Vec<Layout>,
-    /// Instruction sets.
-    pub isas: Vec<Isa>,
-    /// Primary and random rays; the other sets have as many as there are hits.
-    pub count: usize,
-    /// What the run should take; it takes longer if a few passes do.
-    pub time: Duration,
-}
-
-/// A subject that need not exist yet: large ones are made one at a time.
-pub enum Source {
-    /// Made when its turn comes.
-    Generated(Generator),
-    /// A user's, with its name.
-    Given(String, Subject),
-}
-
-impl Source {
-    /// Its name in tables.
-    #[must_use]
-    pub fn name(&self) -> String {
-        match self {
-            Source::Generated(generator) => generator.to_string(),
-            Source::Given(name, _) => name.clone(),
-        }
-    }
-}
-
-/// An arm on an instruction set with a subject's ray set: a row.
-#[derive(Clone, Debug)]
-pub struct Record {
-    /// Name of the subject.
-    pub subject: String,
-    /// Its triangles and spheres.
-    pub primitives: usize,
-    /// The ray set.
-    pub rays: RayKind,
-    /// What is walked.
-    pub tree: Tree,
-    /// How primitives lie.
-    pub layout: Layout,
-    /// Instructions.
-    pub isa: Level,
-    /// Rays that were timed: all, but for arms that test every primitive a share of them, evenly spread.
-    pub timed: usize,
-    /// How often.
-    pub passes: u32,
-    /// The sum over chunks of rays of each one's shortest CPU time.
-    pub seconds: f64,
-    /// What those rays took, for arms that count.
-    pub work: Option<Work>,
-    /// Bytes of nodes and primitives, a primitive.
-    pub bytes: f64,
-    /// Building the product's tree, by the wall clock, milliseconds; rivals are derived from it.
-    pub build_ms: f64,
-    /// FNV-1a over the answers of the whole ray set, the same for every arm.
-    pub checksum: u64,
-}
-
-impl Record {
-    /// Nanoseconds a ray.
-    #[must_use]
-    pub fn ns(&self) -> f64 {
-        self.seconds * 1e9 / self.timed as f64
-    }
-
-    /// Million rays a second.
-    #[must_use]
-    pub fn mrays(&self) -> f64 {
-        1e3 / self.ns()
-    }
-}
-
-/// What is going on, for people who wait.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Stage {
-    /// Making a subject and its trees.
-    Building,
-    /// Asking all arms for their answers.
-    Checking(RayKind),
-    /// Timing.
-    Timing(RayKind),
-}
+use std::time::Instant;
 
 /// Runs the plan. `watch` hears of every stage before it starts.
 ///
@@ -118,7 +24,7 @@ pub fn run(plan: Plan, mut watch: impl FnMut(&str, Stage)) -> Result<Vec<Record>
         watch(&name, Stage::Building);
         let subject = match source {
             Source::Generated(generator) => generator.make(),
-            Source::Given(_, subject) => subject,
+            Source::Given(_, subject) => *subject,
         };
         let bench = Bench::new(name, &subject, &plan.trees, &plan.layouts);
         let sets = RaySets::new(&subject, &bench.product, plan.count);

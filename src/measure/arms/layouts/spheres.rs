@@ -79,14 +79,7 @@ fn hits<L: Lanes, B: Balls>(
     limit: f32,
     t: &mut [f32; BLOCK],
 ) -> u32 {
-    let planes = |of: [usize; 3]| -> [L; 3] {
-        [
-            from.plane(slot, of[0]),
-            from.plane(slot, of[1]),
-            from.plane(slot, of[2]),
-        ]
-    };
-    let own = ray.between(planes(ray.near), planes(ray.far));
+    let own = ray.between(planes(from, slot, ray.near), planes(from, slot, ray.far));
     // Nothing at infinity is ever met.
     let met = own.meets(L::splat(Lanes::min(limit, f32::MAX)));
     if L::bits(met) == 0 {
@@ -105,4 +98,14 @@ fn hits<L: Lanes, B: Balls>(
     clamped.store(t);
     let counts = zero.lt(root) & root.lt(L::splat(f32::INFINITY)) & zero.lt(clamped);
     L::bits(met & counts & clamped.le(L::splat(limit)))
+}
+
+/// A plane for each axis.
+#[inline(always)]
+fn planes<L: Lanes, B: Balls>(from: &B, slot: usize, of: [usize; 3]) -> [L; 3] {
+    [
+        from.plane(slot, of[0]),
+        from.plane(slot, of[1]),
+        from.plane(slot, of[2]),
+    ]
 }

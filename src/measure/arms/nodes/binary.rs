@@ -61,14 +61,17 @@ impl Node for Binary {
 impl Binary {
     #[inline(always)]
     fn interval(&self, ray: &WalkRay<f32>, child: usize) -> Interval<f32> {
-        let plane = |of: [usize; 3]| {
-            [
-                self.planes[of[0]][child],
-                self.planes[of[1]][child],
-                self.planes[of[2]][child],
-            ]
-        };
-        ray.between(plane(ray.near), plane(ray.far))
+        ray.between(self.planes(child, ray.near), self.planes(child, ray.far))
+    }
+
+    /// A plane for each axis.
+    #[inline(always)]
+    fn planes(&self, child: usize, of: [usize; 3]) -> [f32; 3] {
+        [
+            self.planes[of[0]][child],
+            self.planes[of[1]][child],
+            self.planes[of[2]][child],
+        ]
     }
 }
 

@@ -68,33 +68,38 @@ fn speeds(text: &mut String, rows: &[&Record], kinds: &[RayKind]) {
     }
 }
 
-/// Nodes and primitives are those of the tree; lanes also depend on the layout.
+/// A number of [`Work`].
+type Count = fn(&Work) -> u64;
+
+const COUNTS: [(&str, Count); 3] = [
+    ("nodes a ray", |work| work.nodes),
+    ("primitives", |work| work.primitives),
+    ("lanes", |work| work.lanes),
+];
+
+/// What the walks of the rivals take. Every layout that is tested in lanes takes the same number of them.
 fn work(text: &mut String, rows: &[&Record], kinds: &[RayKind]) {
-    let mut told = Vec::new();
-    let mut line = |text: &mut String, title: String, row: &Record, count: fn(&Work) -> u64| {
-        if told.contains(&title) {
-            return;
-        }
-        let _ = write!(text, "{title:TITLE$}");
-        for &kind in kinds {
-            let same =
-                |r: &&&Record| r.rays == kind && (r.tree, r.layout) == (row.tree, row.layout);
-            let per_ray = rows.iter().find(same).and_then(|r| {
-                let work = r.work.as_ref()?;
-                Some(format!("{:.1}", count(work) as f64 / r.timed as f64))
-            });
-            let _ = write!(text, "{:>COLUMN$}", per_ray.unwrap_or_default());
-        }
-        let _ = writeln!(text);
-        told.push(title);
-    };
+    let mut trees = Vec::new();
     for row in rows.iter().filter(|row| row.work.is_some()) {
-        let tree = row.tree;
-        line(text, format!("  {tree:5} nodes a ray"), row, |w| w.nodes);
-        line(text, format!("  {tree:5} primitives"), row, |w| {
-            w.primitives
-        });
-        let lanes = format!("  {tree:5} lanes, {}", row.layout);
-        line(text, lanes, row, |w| w.lanes);
+        let of_tree = |r: &&&Record| r.tree == row.tree && r.work.is_some();
+        // Structs are tested one by one.
+        let padded = rows.iter().filter(of_tree).map(|r| r.layout).max();
+        if trees.contains(&row.tree) {
+            continue;
+        }
+        trees.push(row.tree);
+        for (title, count) in COUNTS {
+            let title = format!("  {:5} {title}", row.tree);
+            let _ = write!(text, "{title:TITLE$}");
+            for &kind in kinds {
+                let same = |r: &&&Record| of_tree(r) && Some(r.layout) == padded && r.rays == kind;
+                let per_ray = rows.iter().find(same).and_then(|r| {
+                    let work = r.work.as_ref()?;
+                    Some(format!("{:.1}", count(work) as f64 / r.timed as f64))
+                });
+                let _ = write!(text, "{:>COLUMN$}", per_ray.unwrap_or_default());
+            }
+            let _ = writeln!(text);
+        }
     }
 }
