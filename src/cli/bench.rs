@@ -27,7 +27,7 @@ pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
     if records.is_empty() {
         return Err(Failure::usage(
             "none of these layouts runs with these trees and instruction sets",
-            "avx512 and no bvh2 is luxel's; box and brute are for small scenes; gathered is for sse2 and avx2",
+            "bvh2 is for rivals, avx512 for luxel, gathered for triangles with sse2 or avx2, box and brute for small scenes",
         ));
     }
     let write = |path: &Path, text: String| {

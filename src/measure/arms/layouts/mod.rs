@@ -126,3 +126,9 @@ fn first(slots: u32) -> u32 {
         None => u32::MAX,
     }
 }
+
+/// The lane of a slot in its block, which for as many lanes as a block has is 0, as the compiler can see.
+#[inline(always)]
+fn first_lane<L: Lanes>(slot: usize) -> usize {
+    slot % BLOCK / L::N * L::N
+}

@@ -1,14 +1,14 @@
 //! Spheres as structs, in ten arrays, in lane blocks.
 
 use super::spheres::Balls;
-use super::used;
+use super::{first_lane, used};
 use crate::flat::{BLOCK, FlatScene, SphereBlock};
 use crate::math::lanes::{Lanes, WideLanes};
 use std::sync::Arc;
 
 /// A sphere with its box.
 #[derive(Clone, Copy)]
-struct Sphere {
+pub(in super::super) struct Sphere {
     bounds: [f32; 6],
     center: [f64; 3],
     radius: f64,
@@ -41,19 +41,26 @@ impl Structs {
 impl Balls for Structs {
     type Tested<L: Lanes> = f32;
 
+    type Place<'a> = &'a Sphere;
+
     #[inline(always)]
-    fn plane<L: Lanes>(&self, slot: usize, plane: usize) -> L {
-        L::splat(self.0[slot].bounds[plane])
+    fn place<L: Lanes>(&self, slot: usize) -> &Sphere {
+        &self.0[slot]
     }
 
     #[inline(always)]
-    fn center<L: Lanes>(&self, slot: usize, axis: usize) -> L::Wide {
-        L::Wide::splat(self.0[slot].center[axis])
+    fn plane<L: Lanes>(place: &Sphere, plane: usize) -> L {
+        L::splat(place.bounds[plane])
     }
 
     #[inline(always)]
-    fn radius<L: Lanes>(&self, slot: usize) -> L::Wide {
-        L::Wide::splat(self.0[slot].radius)
+    fn center<L: Lanes>(place: &Sphere, axis: usize) -> L::Wide {
+        L::Wide::splat(place.center[axis])
+    }
+
+    #[inline(always)]
+    fn radius<L: Lanes>(place: &Sphere) -> L::Wide {
+        L::Wide::splat(place.radius)
     }
 
     #[inline(always)]
@@ -97,19 +104,26 @@ impl Arrays {
 impl Balls for Arrays {
     type Tested<L: Lanes> = L;
 
+    type Place<'a> = (&'a Arrays, usize);
+
     #[inline(always)]
-    fn plane<L: Lanes>(&self, slot: usize, plane: usize) -> L {
-        L::load(&self.bounds[plane][slot..])
+    fn place<L: Lanes>(&self, slot: usize) -> (&Arrays, usize) {
+        (self, slot)
     }
 
     #[inline(always)]
-    fn center<L: Lanes>(&self, slot: usize, axis: usize) -> L::Wide {
-        L::Wide::load(&self.center[axis][slot..])
+    fn plane<L: Lanes>((arrays, slot): (&Arrays, usize), plane: usize) -> L {
+        L::load(&arrays.bounds[plane][slot..slot + L::N])
     }
 
     #[inline(always)]
-    fn radius<L: Lanes>(&self, slot: usize) -> L::Wide {
-        L::Wide::load(&self.radius[slot..])
+    fn center<L: Lanes>((arrays, slot): (&Arrays, usize), axis: usize) -> L::Wide {
+        L::Wide::load(&arrays.center[axis][slot..slot + L::N])
+    }
+
+    #[inline(always)]
+    fn radius<L: Lanes>((arrays, slot): (&Arrays, usize)) -> L::Wide {
+        L::Wide::load(&arrays.radius[slot..slot + L::N])
     }
 
     #[inline(always)]
@@ -137,19 +151,26 @@ impl Blocks {
 impl Balls for Blocks {
     type Tested<L: Lanes> = L;
 
+    type Place<'a> = (&'a SphereBlock, usize);
+
     #[inline(always)]
-    fn plane<L: Lanes>(&self, slot: usize, plane: usize) -> L {
-        L::load(&self.block(slot).bounds[plane][slot % BLOCK..])
+    fn place<L: Lanes>(&self, slot: usize) -> (&SphereBlock, usize) {
+        (self.block(slot), first_lane::<L>(slot))
     }
 
     #[inline(always)]
-    fn center<L: Lanes>(&self, slot: usize, axis: usize) -> L::Wide {
-        L::Wide::load(&self.block(slot).center[axis][slot % BLOCK..])
+    fn plane<L: Lanes>((block, lane): (&SphereBlock, usize), plane: usize) -> L {
+        L::load(&block.bounds[plane][lane..])
     }
 
     #[inline(always)]
-    fn radius<L: Lanes>(&self, slot: usize) -> L::Wide {
-        L::Wide::load(&self.block(slot).radius[slot % BLOCK..])
+    fn center<L: Lanes>((block, lane): (&SphereBlock, usize), axis: usize) -> L::Wide {
+        L::Wide::load(&block.center[axis][lane..])
+    }
+
+    #[inline(always)]
+    fn radius<L: Lanes>((block, lane): (&SphereBlock, usize)) -> L::Wide {
+        L::Wide::load(&block.radius[lane..])
     }
 
     #[inline(always)]

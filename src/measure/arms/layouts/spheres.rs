@@ -10,12 +10,18 @@ use crate::trace::kernels::sphere::WideRay;
 pub(in super::super) trait Balls {
     /// The lanes that spheres are tested in, on a machine of lanes `L`.
     type Tested<L: Lanes>: Lanes;
-    /// A plane of the boxes of the spheres from `slot` on: minima of x, y, z, then maxima.
-    fn plane<L: Lanes>(&self, slot: usize, plane: usize) -> L;
-    /// A coordinate of the centres.
-    fn center<L: Lanes>(&self, slot: usize, axis: usize) -> L::Wide;
-    /// The radii.
-    fn radius<L: Lanes>(&self, slot: usize) -> L::Wide;
+    /// Where some spheres are: found once, so that what is checked is checked once, too.
+    type Place<'a>: Copy
+    where
+        Self: 'a;
+    /// The `L::N` spheres from `slot` on.
+    fn place<L: Lanes>(&self, slot: usize) -> Self::Place<'_>;
+    /// A plane of their boxes: minima of x, y, z, then maxima.
+    fn plane<L: Lanes>(place: Self::Place<'_>, plane: usize) -> L;
+    /// A coordinate of their centres.
+    fn center<L: Lanes>(place: Self::Place<'_>, axis: usize) -> L::Wide;
+    /// Their radii.
+    fn radius<L: Lanes>(place: Self::Place<'_>) -> L::Wide;
     /// Sphere index; `u32::MAX` in unused slots.
     fn prim(&self, slot: usize) -> u32;
     /// Bytes of all of them.
@@ -79,18 +85,20 @@ fn hits<L: Lanes, B: Balls>(
     limit: f32,
     t: &mut [f32; BLOCK],
 ) -> u32 {
-    let own = ray.between(planes(from, slot, ray.near), planes(from, slot, ray.far));
+    let place = from.place::<L>(slot);
+    let near = planes::<L, B>(place, ray.near);
+    let own = ray.between(near, planes::<L, B>(place, ray.far));
     // Nothing at infinity is ever met.
     let met = own.meets(L::splat(Lanes::min(limit, f32::MAX)));
     if L::bits(met) == 0 {
         return 0;
     }
     let center = [
-        from.center::<L>(slot, 0),
-        from.center::<L>(slot, 1),
-        from.center::<L>(slot, 2),
+        B::center::<L>(place, 0),
+        B::center::<L>(place, 1),
+        B::center::<L>(place, 2),
     ];
-    let Some(root) = wide.root::<L>(center, from.radius::<L>(slot)) else {
+    let Some(root) = wide.root::<L>(center, B::radius::<L>(place)) else {
         return 0;
     };
     let zero = L::splat(0.0);
@@ -102,10 +110,10 @@ fn hits<L: Lanes, B: Balls>(
 
 /// A plane for each axis.
 #[inline(always)]
-fn planes<L: Lanes, B: Balls>(from: &B, slot: usize, of: [usize; 3]) -> [L; 3] {
+fn planes<L: Lanes, B: Balls>(place: B::Place<'_>, of: [usize; 3]) -> [L; 3] {
     [
-        from.plane(slot, of[0]),
-        from.plane(slot, of[1]),
-        from.plane(slot, of[2]),
+        B::plane(place, of[0]),
+        B::plane(place, of[1]),
+        B::plane(place, of[2]),
     ]
 }

@@ -1,14 +1,14 @@
 //! Triangles as structs, in nine arrays, in lane blocks.
 
 use super::triangles::Vertices;
-use super::used;
+use super::{first_lane, used};
 use crate::flat::{BLOCK, FlatScene, TriangleBlock};
 use crate::math::lanes::Lanes;
 use std::sync::Arc;
 
 /// A triangle as most programs have it.
 #[derive(Clone, Copy)]
-struct Triangle {
+pub(in super::super) struct Triangle {
     v: [[f32; 3]; 3],
     prim: u32,
 }
@@ -34,9 +34,16 @@ impl Structs {
 impl Vertices for Structs {
     type Tested<L: Lanes> = f32;
 
+    type Place<'a> = &'a Triangle;
+
     #[inline(always)]
-    fn load<L: Lanes>(&self, slot: usize, vertex: usize, axis: usize) -> L {
-        L::splat(self.0[slot].v[vertex][axis])
+    fn place<L: Lanes>(&self, slot: usize) -> &Triangle {
+        &self.0[slot]
+    }
+
+    #[inline(always)]
+    fn load<L: Lanes>(place: &Triangle, vertex: usize, axis: usize) -> L {
+        L::splat(place.v[vertex][axis])
     }
 
     #[inline(always)]
@@ -68,10 +75,17 @@ impl Gathered {
 impl Vertices for Gathered {
     type Tested<L: Lanes> = L;
 
+    type Place<'a> = &'a [Triangle];
+
     #[inline(always)]
-    fn load<L: Lanes>(&self, slot: usize, vertex: usize, axis: usize) -> L {
+    fn place<L: Lanes>(&self, slot: usize) -> &[Triangle] {
+        &self.0[slot..slot + L::N]
+    }
+
+    #[inline(always)]
+    fn load<L: Lanes>(place: &[Triangle], vertex: usize, axis: usize) -> L {
         let mut lanes = [0.0; BLOCK];
-        for (lane, triangle) in lanes.iter_mut().zip(&self.0[slot..slot + L::N]) {
+        for (lane, triangle) in lanes.iter_mut().zip(place) {
             *lane = triangle.v[vertex][axis];
         }
         L::load(&lanes)
@@ -112,9 +126,16 @@ impl Arrays {
 impl Vertices for Arrays {
     type Tested<L: Lanes> = L;
 
+    type Place<'a> = (&'a Arrays, usize);
+
     #[inline(always)]
-    fn load<L: Lanes>(&self, slot: usize, vertex: usize, axis: usize) -> L {
-        L::load(&self.v[vertex][axis][slot..])
+    fn place<L: Lanes>(&self, slot: usize) -> (&Arrays, usize) {
+        (self, slot)
+    }
+
+    #[inline(always)]
+    fn load<L: Lanes>((arrays, slot): (&Arrays, usize), vertex: usize, axis: usize) -> L {
+        L::load(&arrays.v[vertex][axis][slot..slot + L::N])
     }
 
     #[inline(always)]
@@ -142,9 +163,16 @@ impl Blocks {
 impl Vertices for Blocks {
     type Tested<L: Lanes> = L;
 
+    type Place<'a> = (&'a TriangleBlock, usize);
+
     #[inline(always)]
-    fn load<L: Lanes>(&self, slot: usize, vertex: usize, axis: usize) -> L {
-        L::load(&self.block(slot).v[vertex][axis][slot % BLOCK..])
+    fn place<L: Lanes>(&self, slot: usize) -> (&TriangleBlock, usize) {
+        (self.block(slot), first_lane::<L>(slot))
+    }
+
+    #[inline(always)]
+    fn load<L: Lanes>((block, lane): (&TriangleBlock, usize), vertex: usize, axis: usize) -> L {
+        L::load(&block.v[vertex][axis][lane..])
     }
 
     #[inline(always)]

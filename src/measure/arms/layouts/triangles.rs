@@ -10,8 +10,14 @@ use crate::trace::kernels::triangle::{Edges, Sheared, in_front};
 pub(in super::super) trait Vertices {
     /// The lanes that triangles are tested in, on a machine of lanes `L`.
     type Tested<L: Lanes>: Lanes;
-    /// A coordinate of a vertex of the triangles from `slot` on; beyond the last slot, anything.
-    fn load<L: Lanes>(&self, slot: usize, vertex: usize, axis: usize) -> L;
+    /// Where some triangles are: found once, so that what is checked is checked once, too.
+    type Place<'a>: Copy
+    where
+        Self: 'a;
+    /// The `L::N` triangles from `slot` on.
+    fn place<L: Lanes>(&self, slot: usize) -> Self::Place<'_>;
+    /// A coordinate of one of their vertices; beyond the last slot, anything.
+    fn load<L: Lanes>(place: Self::Place<'_>, vertex: usize, axis: usize) -> L;
     /// Primitive index; `u32::MAX` in unused slots.
     fn prim(&self, slot: usize) -> u32;
     /// Bytes of all of them.
@@ -87,7 +93,8 @@ fn hits<L: Lanes, V: Vertices>(
     limit: f32,
     out: &mut Candidates,
 ) -> u32 {
-    let sheared = sheared(ray, from, slot);
+    let place = from.place::<L>(slot);
+    let sheared = sheared::<L, V>(ray, place);
     let Edges { e, det } = sheared.edges();
     let zero = L::splat(0.0);
     let positive = zero.le(e[0]) & zero.le(e[1]) & zero.le(e[2]);
@@ -103,7 +110,7 @@ fn hits<L: Lanes, V: Vertices>(
     ];
     let t = (e[0] * z[0] + e[1] * z[1] + e[2] * z[2]) / det;
     let bound = sheared.t_error(e, z) / det.abs();
-    let [min, max] = corners(from, slot);
+    let [min, max] = corners::<L, V>(place);
     let own = ray.box_of(min, max);
     let clamped = t.min(own.far).max(own.near).max(zero);
     clamped.store(&mut out.t);
@@ -125,13 +132,13 @@ fn hits<L: Lanes, V: Vertices>(
 
 /// Vertices relative to the ray's origin, sheared along it.
 #[inline(always)]
-fn sheared<L: Lanes, V: Vertices>(ray: &WalkRay<L>, from: &V, slot: usize) -> Sheared<L> {
+fn sheared<L: Lanes, V: Vertices>(ray: &WalkRay<L>, place: V::Place<'_>) -> Sheared<L> {
     let [kx, ky, kz] = ray.axes;
     let mut p = [[L::splat(0.0); 3]; 3];
     for (vertex, out) in p.iter_mut().enumerate() {
-        let z = from.load::<L>(slot, vertex, kz) - ray.origin[kz];
-        let x = from.load::<L>(slot, vertex, kx) - ray.origin[kx];
-        let y = from.load::<L>(slot, vertex, ky) - ray.origin[ky];
+        let z = V::load::<L>(place, vertex, kz) - ray.origin[kz];
+        let x = V::load::<L>(place, vertex, kx) - ray.origin[kx];
+        let y = V::load::<L>(place, vertex, ky) - ray.origin[ky];
         *out = [x + ray.shear[0] * z, y + ray.shear[1] * z, z];
     }
     Sheared { p }
@@ -139,12 +146,12 @@ fn sheared<L: Lanes, V: Vertices>(ray: &WalkRay<L>, from: &V, slot: usize) -> Sh
 
 /// The triangles' own boxes.
 #[inline(always)]
-fn corners<L: Lanes, V: Vertices>(from: &V, slot: usize) -> [[L; 3]; 2] {
+fn corners<L: Lanes, V: Vertices>(place: V::Place<'_>) -> [[L; 3]; 2] {
     let [mut min, mut max] = [[L::splat(0.0); 3]; 2];
     for axis in 0..3 {
-        let a: L = from.load(slot, 0, axis);
-        let b = from.load(slot, 1, axis);
-        let c = from.load(slot, 2, axis);
+        let a: L = V::load(place, 0, axis);
+        let b = V::load(place, 1, axis);
+        let c = V::load(place, 2, axis);
         min[axis] = a.min(b).min(c);
         max[axis] = a.max(b).max(c);
     }
@@ -154,13 +161,14 @@ fn corners<L: Lanes, V: Vertices>(from: &V, slot: usize) -> [[L; 3]; 2] {
 /// A block with one triangle in its first lane, for the rare case that needs f64.
 #[inline(always)]
 fn alone<V: Vertices>(from: &V, slot: usize) -> TriangleBlock {
+    let place = from.place::<f32>(slot);
     let mut block = TriangleBlock {
         v: [[[0.0; BLOCK]; 3]; 3],
         prim: [u32::MAX; BLOCK],
     };
     for (vertex, axes) in block.v.iter_mut().enumerate() {
         for (axis, lanes) in axes.iter_mut().enumerate() {
-            lanes[0] = from.load::<f32>(slot, vertex, axis);
+            lanes[0] = V::load::<f32>(place, vertex, axis);
         }
     }
     block
