@@ -14,6 +14,7 @@ pub mod flip;
 pub mod heat;
 mod image;
 mod pair;
+pub mod referee;
 
 pub use self::errors::{Bias, Errors, Maximum, errors, relative_squared};
 pub use self::image::{Image, ReadError};
