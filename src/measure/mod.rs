@@ -4,6 +4,8 @@
 //! the pixels that count; [`errors`] gives the statistics, [`flip`] what an eye would notice, [`heat`] a picture of
 //! either. A value that is not finite is an error at the door ([`Pair::new`]), so none of the numbers can hide it.
 //!
+//! [`referee`] asks the same of what rays hit.
+//!
 //! Deliberately absent: the arguments and words of `luxel compare`, the verdict on what error is too much, and any
 //! alignment, scaling or exposure that would make images more alike than they are.
 

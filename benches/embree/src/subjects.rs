@@ -8,17 +8,21 @@ use std::path::Path;
 /// A name, and what makes the subject when its turn comes.
 pub(crate) type Maker = (String, Box<dyn FnOnce() -> Subject>);
 
+/// Makes a subject.
+type Generator = fn() -> Subject;
+
 /// Spheres of the subject of spheres.
 const SPHERES: u32 = 100_000;
 
-/// Names and generators; small ones first.
-const ALL: [(&str, fn() -> Subject); 6] = [
-    ("ball-3k", || meshes::ball(meshes::BALL_SIZES[0])),
-    ("ball-70k", || meshes::ball(meshes::BALL_SIZES[1])),
-    ("ball-1m", || meshes::ball(meshes::BALL_SIZES[2])),
-    ("terrain-4m", || meshes::terrain(meshes::TERRAIN_SIDE)),
+/// Names as in `luxel bench`, and generators; small ones first.
+const ALL: [(&str, Generator); 7] = [
+    ("3k", || meshes::ball(meshes::BALL_SIZES[0])),
+    ("70k", || meshes::ball(meshes::BALL_SIZES[1])),
+    ("1m", || meshes::ball(meshes::BALL_SIZES[2])),
+    ("4m", || meshes::ball(meshes::BALL_SIZES[3])),
+    ("terrain", || meshes::terrain(meshes::TERRAIN_SIDE)),
     ("soup", || meshes::soup(meshes::SOUP_SIZE)),
-    ("spheres", || meshes::spheres(SPHERES)),
+    ("spheres-100k", || meshes::spheres(SPHERES)),
 ];
 
 /// The subjects of these names, or all.

@@ -3,11 +3,10 @@
 
 use cpu_time::ProcessTime;
 use luxel::build::buffer_bytes;
-use luxel::build::bvh::{Accel, Built, Primitives, build};
-use luxel::flat::{
-    Camera, FlatScene, Geometry, Lights, Needs, PixelFilter, Rebase, Shading, Spheres,
-};
+use luxel::build::bvh::{Accel, Primitives, build};
+use luxel::flat::FlatScene;
 use luxel::math::Vec3;
+use luxel::measure::bench::Subject;
 use luxel::trace::isa::Level;
 use luxel::trace::{Hits, Isa, Rays, closest_hit, occluded};
 use std::ffi::CStr;
@@ -79,11 +78,13 @@ impl Engine {
             triangles: &triangles,
             ..Primitives::default()
         };
+        let built = build(&primitives, Accel::Bvh);
+        let took = start.elapsed();
         let engine = Engine {
-            scene: bare_scene(build(&primitives, Accel::Bvh)),
+            scene: Subject::open(Vec::new()).scene(built),
             isa: variant.isa,
         };
-        (engine, start.elapsed())
+        (engine, took)
     }
 
     /// Of every buffer that traversal reads: a bare scene has no others.
@@ -131,41 +132,4 @@ fn gather(rays: &[Ray], batch: &mut Rays) {
         }
     };
     batch.t_max.extend(rays.iter().map(t_max));
-}
-
-/// A scene with nothing but triangles and their tree.
-fn bare_scene(built: Built) -> FlatScene {
-    FlatScene {
-        world: Geometry {
-            triangles: built.triangles,
-            bvh: built.bvh,
-            shading: Shading::default(),
-        },
-        local: Vec::new(),
-        instances: Vec::new(),
-        instance_materials: Vec::new(),
-        spheres: Spheres::default(),
-        materials: Vec::new(),
-        textures: Vec::new(),
-        lights: Lights::default(),
-        background: [0.0; 3],
-        camera: Camera {
-            origin: [0.0; 3],
-            right: [1.0, 0.0, 0.0],
-            down: [0.0, -1.0, 0.0],
-            forward: [0.0, 0.0, -1.0],
-            pixel: 1.0,
-            aperture_radius: 0.0,
-            focus_distance: 1.0,
-            width: 1,
-            height: 1,
-            filter: PixelFilter::Box,
-        },
-        rebase: Rebase {
-            origin: [0.0; 3],
-            scale: 1.0,
-        },
-        needs: Needs::default(),
-        frame: 0,
-    }
 }

@@ -5,13 +5,15 @@
 //!
 //! [`Traced::judge`] holds luxel to what its kernels promise. Of a hit at t on a primitive that the exact ray meets at t64:
 //!
-//! - *agrees*: it is the closest one in f64 too, and t is **inside** its bound, |t − t64| ≤ [`t_error_bound`](crate::trace::kernels::t_error_bound) and a rounding
-//!   of t. A miss agrees with a miss.
+//! - *agrees*: it is the closest one in f64 too, and t is **inside** its bound: |t − t64| is at most
+//!   [`t_error_bound`](crate::trace::kernels::t_error_bound) and a rounding of t. A miss agrees with a miss.
 //! - *tie*: another primitive than in f64, and their t lie inside the sum of their bounds.
-//! - *edge*: hit and miss differ, and the f64 edge function of the primitive in question lies **inside** the bound on
-//!   the rounding of the f32 one: whether the ray passes is not for f32 to know. But neighbours decide alike: where
+//! - *edge*: hit and miss differ, and an f64 edge function of the triangle in question lies **inside** the bound on the
+//!   rounding of the f32 one around 0: whether the ray passes is not for f32 to know. But neighbours decide alike: where
 //!   the surface goes on around the ray, it must have been hit.
 //! - *wrong*: anything else. A miss on a closed mesh is always wrong.
+//!
+//! Spheres are held to f64, in which their kernel computes: a rounding of t, and grazing to 2⁻⁴⁴ of the numbers involved.
 //!
 //! [`Traced::judge_loosely`] is the rule for libraries that promise nothing: see there.
 //!
