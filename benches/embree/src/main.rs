@@ -77,7 +77,11 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let path = arguments.embree.clone();
     let path = path.or_else(|| std::env::var_os("LUXEL_EMBREE").map(PathBuf::from));
     let path = path.ok_or(HOW_TO_GET_EMBREE)?;
-    let embree = Embree::open(&path).map_err(|error| format!("{error}\n{HOW_TO_GET_EMBREE}"))?;
+    let embree = Embree::open(&path).map_err(|error| {
+        let reason = error.source().and_then(Error::source);
+        let reason = reason.map_or(String::new(), |reason| format!(": {reason}"));
+        format!("{error}{reason}\n{HOW_TO_GET_EMBREE}")
+    })?;
     let makers = match &arguments.mesh {
         Some(path) => vec![subjects::of_file(path)?],
         None => subjects::named(&arguments.subjects)?,
