@@ -68,10 +68,10 @@ fn judged(subject: &Subject) -> [usize; 4] {
         let (mut hits, mut blocked) = (Hits::default(), Vec::new());
         closest_hit(&scene, Isa::best(), rays, &mut hits);
         occluded(&scene, Isa::best(), rays, &mut blocked);
-        for i in 0..rays.len() {
+        for (i, &blocked) in blocked.iter().enumerate() {
             let traced = referee.trace(ray(rays, i), rays.t_max[i]);
             let closest = traced.judge(found(&hits, i));
-            for verdict in [closest, traced.judge_occlusion(blocked[i])] {
+            for verdict in [closest, traced.judge_occlusion(blocked)] {
                 verdicts[verdict as usize] += 1;
             }
         }
