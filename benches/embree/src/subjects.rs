@@ -45,7 +45,8 @@ pub(crate) fn of_file(path: &Path) -> Result<Maker, Box<dyn Error>> {
         Some(first) => first.message.clone(),
         None => "it cannot be read".to_owned(),
     })?;
-    let subject = Subject::of_mesh(loader.loaded(mesh)).ok_or("the mesh has no extent")?;
+    let subject = Subject::of_meshes(&[(loader.loaded(mesh), luxel::math::DAffine3::IDENTITY)])
+        .ok_or("the mesh has no extent")?;
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     Ok((name.into_owned(), Box::new(|| subject.in_room())))
 }

@@ -18,10 +18,10 @@
 mod batch;
 mod bound;
 mod entries;
-mod ray;
-mod sphere;
+pub(crate) mod ray;
+pub(crate) mod sphere;
 mod stream;
-mod triangle;
+pub(crate) mod triangle;
 mod walk;
 
 pub use triangle::t_error_bound;

@@ -14,7 +14,7 @@ const FAR: f32 = 1.0 + 4.0 * f32::EPSILON;
 /// One of the six planes of a node's boxes, by where its eight lanes begin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
-pub(super) enum Plane {
+pub(crate) enum Plane {
     MinX = 0,
     MinY = BLOCK as u8,
     MinZ = 2 * BLOCK as u8,
@@ -29,11 +29,19 @@ fn plane<L: Lanes>(planes: &[[f32; BLOCK]; 6], plane: Plane, at: usize) -> L {
     L::load(&planes.as_flattened()[plane as usize + at..])
 }
 
+impl Plane {
+    /// Its row.
+    #[inline(always)]
+    pub(crate) fn row(self) -> usize {
+        self as usize / BLOCK
+    }
+}
+
 /// The planes that a ray meets first and those that it meets last, by axis.
 #[derive(Clone, Copy)]
-struct Planes {
-    near: [Plane; 3],
-    far: [Plane; 3],
+pub(crate) struct Planes {
+    pub(crate) near: [Plane; 3],
+    pub(crate) far: [Plane; 3],
 }
 
 /// By the direction's sign bits.
@@ -64,7 +72,7 @@ const fn planes() -> [Planes; 8] {
 /// An axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
-pub(super) enum Axis {
+pub(crate) enum Axis {
     X,
     Y,
     Z,
@@ -125,31 +133,31 @@ impl<L: Lanes> Setup<L> {
 
 /// A ray in lanes, with what the slab and the triangle test want once.
 #[derive(Clone, Copy)]
-pub(super) struct WalkRay<L> {
+pub(crate) struct WalkRay<L> {
     /// Origin, one axis after the other.
-    pub(super) origin: [L; 3],
+    pub(crate) origin: [L; 3],
     /// 1 / d for near planes and for far ones.
     inv: [[L; 3]; 2],
     /// −d[kx] / d[kz], −d[ky] / d[kz], 1 / d[kz].
-    pub(super) shear: [L; 3],
+    pub(crate) shear: [L; 3],
     /// Origin and direction as given.
-    pub(super) origin_dir: [[f32; 3]; 2],
-    planes: Planes,
+    pub(crate) origin_dir: [[f32; 3]; 2],
+    pub(crate) planes: Planes,
     /// kx, ky, kz of the watertight test.
-    pub(super) axes: [Axis; 3],
+    pub(crate) axes: [Axis; 3],
 }
 
 /// Where a ray is inside a box, widened; empty if `near <= far` does not hold.
 #[derive(Clone, Copy)]
-pub(super) struct Interval<L> {
-    pub(super) near: L,
-    pub(super) far: L,
+pub(crate) struct Interval<L> {
+    pub(crate) near: L,
+    pub(crate) far: L,
 }
 
 impl<L: Lanes> WalkRay<L> {
     /// Nothing for a ray that cannot hit: something is not finite, or the direction is zero.
     #[inline(always)]
-    pub(super) fn new(origin: [f32; 3], dir: [f32; 3]) -> Option<WalkRay<L>> {
+    pub(crate) fn new(origin: [f32; 3], dir: [f32; 3]) -> Option<WalkRay<L>> {
         let sound = Setup::<f32>::sound(origin, dir) != 0;
         sound.then(|| WalkRay::prepared(origin, dir, &Setup::<f32>::new(dir)))
     }
@@ -180,7 +188,7 @@ impl<L: Lanes> WalkRay<L> {
 
     /// The slab test of `L::N` boxes from lane `at` on.
     #[inline(always)]
-    pub(super) fn slabs(&self, planes: &[[f32; BLOCK]; 6], at: usize) -> Interval<L> {
+    pub(crate) fn slabs(&self, planes: &[[f32; BLOCK]; 6], at: usize) -> Interval<L> {
         let near = [
             plane(planes, self.planes.near[0], at),
             plane(planes, self.planes.near[1], at),
@@ -196,7 +204,7 @@ impl<L: Lanes> WalkRay<L> {
 
     /// The slab test of boxes given by their corners.
     #[inline(always)]
-    pub(super) fn box_of(&self, min: [L; 3], max: [L; 3]) -> Interval<L> {
+    pub(crate) fn box_of(&self, min: [L; 3], max: [L; 3]) -> Interval<L> {
         let [mut near, mut far] = [min, max];
         for axis in 0..3 {
             if self.negative(axis) {
@@ -213,7 +221,7 @@ impl<L: Lanes> WalkRay<L> {
     /// is dropped: such a ray counts as inside. Every step is monotone in the planes, so that the interval of a box
     /// contains those of all boxes in it, to the bit.
     #[inline(always)]
-    fn between(&self, near_planes: [L; 3], far_planes: [L; 3]) -> Interval<L> {
+    pub(crate) fn between(&self, near_planes: [L; 3], far_planes: [L; 3]) -> Interval<L> {
         let mut near = L::splat(0.0);
         let mut far = L::splat(f32::INFINITY);
         for axis in 0..3 {
@@ -229,7 +237,7 @@ impl<L: Lanes> WalkRay<L> {
 impl<L: Lanes> Interval<L> {
     /// Whether the interval holds any t in [0, `limit`].
     #[inline(always)]
-    pub(super) fn meets(&self, limit: L) -> L::Mask {
+    pub(crate) fn meets(&self, limit: L) -> L::Mask {
         self.near.le(self.far.min(limit))
     }
 }

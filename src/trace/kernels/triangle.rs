@@ -11,12 +11,59 @@ use crate::math::lanes::Lanes;
 use crate::trace::spawn::gamma;
 
 /// Hits of a block's lanes; lanes that hit nothing hold anything.
-pub(super) struct Candidates {
-    pub(super) t: [f32; BLOCK],
-    /// Edge functions opposite the second and third vertex, and the sum of all three: their quotients are u and v.
-    pub(super) e1: [f32; BLOCK],
-    pub(super) e2: [f32; BLOCK],
-    pub(super) det: [f32; BLOCK],
+pub(crate) struct Candidates {
+    pub(crate) t: [f32; BLOCK],
+    /// Edge functions opposite the second and third vertex, and the sum of all three.
+    e1: [f32; BLOCK],
+    e2: [f32; BLOCK],
+    det: [f32; BLOCK],
+}
+
+impl Candidates {
+    pub(crate) const NONE: Candidates = Candidates {
+        t: [0.0; BLOCK],
+        e1: [0.0; BLOCK],
+        e2: [0.0; BLOCK],
+        det: [0.0; BLOCK],
+    };
+
+    /// The barycentric weights of a lane's second and third vertex.
+    #[inline(always)]
+    pub(crate) fn weights(&self, lane: usize) -> [f32; 2] {
+        [
+            self.e1[lane] / self.det[lane],
+            self.e2[lane] / self.det[lane],
+        ]
+    }
+}
+
+/// Where the vertices of `L::N` triangles come from.
+pub(crate) trait Corners<L> {
+    /// A coordinate of one of their vertices.
+    fn load(&self, vertex: usize, axis: usize) -> L;
+    /// The vertices of one of them.
+    fn vertices(&self, lane: usize) -> [[f32; 3]; 3];
+}
+
+/// The triangles of a block from a lane on.
+#[derive(Clone, Copy)]
+pub(super) struct FromLane<'a>(pub(super) &'a TriangleBlock, pub(super) usize);
+
+impl<L: Lanes> Corners<L> for FromLane<'_> {
+    #[inline(always)]
+    fn load(&self, vertex: usize, axis: usize) -> L {
+        L::load(&self.0.v[vertex][axis][self.1..])
+    }
+
+    #[inline(always)]
+    fn vertices(&self, lane: usize) -> [[f32; 3]; 3] {
+        let (v, lane) = (&self.0.v, self.1 + lane);
+        [
+            [v[0][0][lane], v[0][1][lane], v[0][2][lane]],
+            [v[1][0][lane], v[1][1][lane], v[1][2][lane]],
+            [v[2][0][lane], v[2][1][lane], v[2][2][lane]],
+        ]
+    }
 }
 
 /// Vertices relative to the ray's origin, sheared along it: `p[vertex]` is x, y and z before scaling by 1 / d[kz].
@@ -39,20 +86,20 @@ fn inside<L: Lanes>(e: [L; 3]) -> L::Mask {
     zero.le(least) | greatest.le(zero)
 }
 
-/// Tests the `L::N` triangles from lane `at` on; returns the lanes that hit, in bits from 0 on.
+/// Tests `L::N` triangles; returns the lanes that hit, in bits from 0 on. `out` is written from element `at` on.
 ///
 /// A hit is in front of the origin if its box is, or else if f64 says so ([`in_front`]). Its t is clamped into the widened
 /// slab interval of the triangle's own box (a candidate whose interval is empty is none), raised to `floor`, and at most
 /// `limit`.
 #[inline(always)]
-pub(super) fn test<L: Lanes>(
+pub(crate) fn test<L: Lanes, C: Corners<L>>(
     ray: &WalkRay<L>,
-    block: &TriangleBlock,
+    corners: &C,
     at: usize,
     [floor, limit]: [f32; 2],
     out: &mut Candidates,
 ) -> u32 {
-    let sheared = Sheared::new(ray, block, at);
+    let sheared = Sheared::new(ray, corners);
     let Edges { e, det } = sheared.edges();
     let zero = L::splat(0.0);
     let inside = inside(e) & zero.lt(det.abs());
@@ -65,20 +112,20 @@ pub(super) fn test<L: Lanes>(
         sheared.p[2][2] * ray.shear[2],
     ];
     let t = (e[0] * z[0] + e[1] * z[1] + e[2] * z[2]) / det;
-    let own = own_box(ray, block, at);
+    let own = own_box(ray, corners);
     let clamped = t.min(own.far).max(own.near).max(L::splat(floor));
     clamped.store(&mut out.t[at..]);
     e[1].store(&mut out.e1[at..]);
     e[2].store(&mut out.e2[at..]);
     det.store(&mut out.det[at..]);
     let counts = inside & own.near.le(own.far) & clamped.le(L::splat(limit));
-    let mut hits = L::bits(counts & zero.lt(own.near)) << at;
-    let mut doubtful = L::bits(counts & own.near.le(zero)) << at;
+    let mut hits = L::bits(counts & zero.lt(own.near));
+    let mut doubtful = L::bits(counts & own.near.le(zero));
     while doubtful != 0 {
         let lane = doubtful.trailing_zeros() as usize & (BLOCK - 1);
         doubtful &= doubtful - 1;
-        if in_front(ray.origin_dir, block, lane) {
-            out.t[lane] = out.t[lane].max(f32::MIN_POSITIVE);
+        if in_front(ray.origin_dir, corners.vertices(lane)) {
+            out.t[at + lane] = out.t[at + lane].max(f32::MIN_POSITIVE);
             hits |= 1 << lane;
         }
     }
@@ -92,12 +139,11 @@ pub(super) fn test<L: Lanes>(
 /// accepting it would let rays meet the triangle that they leave, from which `offset_origin` moves them by more than f64
 /// rounds.
 #[inline(always)]
-fn in_front([origin, dir]: [[f32; 3]; 2], block: &TriangleBlock, lane: usize) -> bool {
-    let from = |start: [f32; 3], k: usize| {
-        [0, 1, 2].map(|axis| f64::from(block.v[k][axis][lane]) - f64::from(start[axis]))
+fn in_front([origin, dir]: [[f32; 3]; 2], v: [[f32; 3]; 3]) -> bool {
+    let from = |start: [f32; 3], end: [f32; 3]| {
+        [0, 1, 2].map(|axis| f64::from(end[axis]) - f64::from(start[axis]))
     };
-    let corner = [0, 1, 2].map(|axis| block.v[0][axis][lane]);
-    let [a, b, way] = [from(corner, 1), from(corner, 2), from(origin, 0)];
+    let [a, b, way] = [from(v[0], v[1]), from(v[0], v[2]), from(origin, v[0])];
     let normal = [
         a[1] * b[2] - a[2] * b[1],
         a[2] * b[0] - a[0] * b[2],
@@ -109,14 +155,18 @@ fn in_front([origin, dir]: [[f32; 3]; 2], block: &TriangleBlock, lane: usize) ->
 
 impl<L: Lanes> Sheared<L> {
     #[inline(always)]
-    fn new(ray: &WalkRay<L>, block: &TriangleBlock, at: usize) -> Sheared<L> {
-        let [kx, ky, kz] = ray.axes.map(|axis| axis as usize);
+    fn new<C: Corners<L>>(ray: &WalkRay<L>, corners: &C) -> Sheared<L> {
+        let [kx, ky, kz] = [
+            ray.axes[0] as usize,
+            ray.axes[1] as usize,
+            ray.axes[2] as usize,
+        ];
         let zero = L::splat(0.0);
         let mut p = [[zero; 3]; 3];
-        for (out, vertex) in p.iter_mut().zip(&block.v) {
-            let z = L::load(&vertex[kz][at..]) - ray.origin[kz];
-            let x = L::load(&vertex[kx][at..]) - ray.origin[kx];
-            let y = L::load(&vertex[ky][at..]) - ray.origin[ky];
+        for (vertex, out) in p.iter_mut().enumerate() {
+            let z = corners.load(vertex, kz) - ray.origin[kz];
+            let x = corners.load(vertex, kx) - ray.origin[kx];
+            let y = corners.load(vertex, ky) - ray.origin[ky];
             *out = [x + ray.shear[0] * z, y + ray.shear[1] * z, z];
         }
         Sheared { p }
@@ -167,17 +217,15 @@ fn largest<L: Lanes>(x: [L; 3]) -> L {
 
 /// The widened slab interval of the triangle's own box.
 #[inline(always)]
-fn own_box<L: Lanes>(
-    ray: &WalkRay<L>,
-    block: &TriangleBlock,
-    at: usize,
-) -> super::ray::Interval<L> {
+fn own_box<L: Lanes, C: Corners<L>>(ray: &WalkRay<L>, corners: &C) -> super::ray::Interval<L> {
     let zero = L::splat(0.0);
     let [mut min, mut max] = [[zero; 3]; 2];
     for axis in 0..3 {
-        let a = L::load(&block.v[0][axis][at..]);
-        let b = L::load(&block.v[1][axis][at..]);
-        let c = L::load(&block.v[2][axis][at..]);
+        let (a, b, c) = (
+            corners.load(0, axis),
+            corners.load(1, axis),
+            corners.load(2, axis),
+        );
         min[axis] = a.min(b).min(c);
         max[axis] = a.max(b).max(c);
     }
@@ -202,7 +250,7 @@ pub fn t_error_bound(vertices: [[f32; 3]; 3], origin: [f32; 3], dir: [f32; 3]) -
     let Some(ray) = WalkRay::<f32>::new(origin, dir) else {
         return f32::INFINITY;
     };
-    let sheared = Sheared::new(&ray, &block, 0);
+    let sheared = Sheared::new(&ray, &FromLane(&block, 0));
     let Edges { e, det } = sheared.edges();
     let z = sheared.p.map(|p| p[2] * ray.shear[2]);
     let numerator = sheared.t_error(e, z);

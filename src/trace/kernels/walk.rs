@@ -2,7 +2,7 @@
 
 use super::ray::{WalkRay, splat};
 use super::sphere::WideRay;
-use super::triangle::{self, Candidates};
+use super::triangle::{self, Candidates, FromLane};
 use crate::flat::bvh::{STACK, WIDTH, kind};
 use crate::flat::{
     BLOCK, Bvh, Child, FlatScene, Instance, LinearNode, SphereBlock, Spheres, TriangleBlock,
@@ -282,16 +282,12 @@ pub(super) fn triangle_block<L: Lanes, const ANY: bool>(
     ray: &WalkRay<L>,
     best: &mut Best,
 ) -> bool {
-    let mut c = Candidates {
-        t: [0.0; BLOCK],
-        e1: [0.0; BLOCK],
-        e2: [0.0; BLOCK],
-        det: [0.0; BLOCK],
-    };
+    let mut c = Candidates::NONE;
     let mut hit = 0;
     let mut at = 0;
     while at < BLOCK {
-        hit |= triangle::test(ray, block, at, [tree.floor, best.t], &mut c);
+        let corners = FromLane(block, at);
+        hit |= triangle::test(ray, &corners, at, [tree.floor, best.t], &mut c) << at;
         at += L::N;
     }
     while hit != 0 {
@@ -305,8 +301,7 @@ pub(super) fn triangle_block<L: Lanes, const ANY: bool>(
         candidate.prim = block.prim[lane];
         candidate.instance = tree.instance;
         if best.yields_to(&candidate) {
-            candidate.u = c.e1[lane] / c.det[lane];
-            candidate.v = c.e2[lane] / c.det[lane];
+            [candidate.u, candidate.v] = c.weights(lane);
             *best = candidate;
         }
     }

@@ -3,7 +3,7 @@
 use super::{Best, Child, Primitives, first};
 use crate::flat::{BLOCK, Spheres};
 use crate::math::lanes::Lanes;
-use crate::trace::kernels::ray::WalkRay;
+use crate::trace::kernels::ray::{Plane, WalkRay};
 use crate::trace::kernels::sphere::WideRay;
 
 /// Spheres in some layout; beyond the last slot they hold anything.
@@ -86,8 +86,8 @@ fn hits<L: Lanes, B: Balls>(
     t: &mut [f32; BLOCK],
 ) -> u32 {
     let place = from.place::<L>(slot);
-    let near = planes::<L, B>(place, ray.near);
-    let own = ray.between(near, planes::<L, B>(place, ray.far));
+    let near = planes::<L, B>(place, ray.planes.near);
+    let own = ray.between(near, planes::<L, B>(place, ray.planes.far));
     // Nothing at infinity is ever met.
     let met = own.meets(L::splat(Lanes::min(limit, f32::MAX)));
     if L::bits(met) == 0 {
@@ -110,10 +110,10 @@ fn hits<L: Lanes, B: Balls>(
 
 /// A plane for each axis.
 #[inline(always)]
-fn planes<L: Lanes, B: Balls>(place: B::Place<'_>, of: [usize; 3]) -> [L; 3] {
+fn planes<L: Lanes, B: Balls>(place: B::Place<'_>, of: [Plane; 3]) -> [L; 3] {
     [
-        B::plane(place, of[0]),
-        B::plane(place, of[1]),
-        B::plane(place, of[2]),
+        B::plane(place, of[0].row()),
+        B::plane(place, of[1].row()),
+        B::plane(place, of[2].row()),
     ]
 }

@@ -5,11 +5,11 @@
 //! Made from the product's tree: each wide node becomes a small tree over its children, pairs of least area first.
 
 use super::{Child, Node, Stack, Tree, child, root};
-use crate::flat::Bvh;
-use crate::flat::bvh::{WIDTH, kind};
+use crate::flat::bvh::WIDTH;
+use crate::flat::{self, Bvh};
 use crate::math::Aabb;
 use crate::math::lanes::Lanes;
-use crate::trace::kernels::ray::{Interval, WalkRay};
+use crate::trace::kernels::ray::{Interval, Plane, WalkRay};
 
 /// A node.
 #[repr(C, align(64))]
@@ -61,16 +61,17 @@ impl Node for Binary {
 impl Binary {
     #[inline(always)]
     fn interval(&self, ray: &WalkRay<f32>, child: usize) -> Interval<f32> {
-        ray.between(self.planes(child, ray.near), self.planes(child, ray.far))
+        let near = self.planes(child, ray.planes.near);
+        ray.between(near, self.planes(child, ray.planes.far))
     }
 
     /// A plane for each axis.
     #[inline(always)]
-    fn planes(&self, child: usize, of: [usize; 3]) -> [f32; 3] {
+    fn planes(&self, child: usize, of: [Plane; 3]) -> [f32; 3] {
         [
-            self.planes[of[0]][child],
-            self.planes[of[1]][child],
-            self.planes[of[2]][child],
+            self.planes[of[0].row()][child],
+            self.planes[of[1].row()][child],
+            self.planes[of[2].row()][child],
         ]
     }
 }
@@ -131,9 +132,9 @@ impl<F: Fn(u32, u32) -> Child> Maker<'_, F> {
     /// The children of a wide node as one pair: always those two are joined whose common box is the smallest.
     fn paired(&self, at: usize) -> Pair {
         let node = &self.bvh.nodes[at];
-        let used = |slot: &usize| node.kind[*slot] != kind::INNER || node.child[*slot] != 0;
+        let used = |slot: &usize| node.child[*slot] != 0;
         let single = |slot: usize| {
-            let child = child([node.child[slot], node.kind[slot]], &self.leaf);
+            let child = child(flat::Child(node.child[slot]), &self.leaf);
             Pair::Child(child, node.child_box(slot))
         };
         let mut pairs: Vec<Pair> = (0..WIDTH).filter(used).map(single).collect();

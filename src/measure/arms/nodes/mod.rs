@@ -8,8 +8,8 @@ mod wide;
 pub(super) use binary::Binary;
 pub(super) use wide::Wide;
 
-use crate::flat::Bvh;
 use crate::flat::bvh::{STACK, kind};
+use crate::flat::{self, Bvh};
 use crate::math::lanes::Lanes;
 use crate::trace::kernels::ray::WalkRay;
 
@@ -80,18 +80,18 @@ pub(super) struct Tree<N> {
 }
 
 /// A child of the product's tree.
-fn child([index, tagged]: [u32; 2], leaf: impl Fn(u32, u32) -> Child) -> Child {
-    match tagged & kind::MASK {
+fn child(of: flat::Child, leaf: impl Fn(u32, u32) -> Child) -> Child {
+    match of.kind() {
         kind::INNER => Child {
-            first: index,
+            first: of.index() as u32,
             slots: 0,
         },
-        _ => leaf(index, tagged & !kind::MASK),
+        _ => leaf(of.index() as u32, of.len() as u32),
     }
 }
 
 /// The root of the product's tree.
 fn root(bvh: &Bvh, leaf: impl Fn(u32, u32) -> Child) -> Option<Child> {
-    let empty = bvh.root_kind == kind::INNER && bvh.nodes.is_empty();
-    (!empty).then(|| child([bvh.root, bvh.root_kind], leaf))
+    let empty = bvh.root.kind() == kind::INNER && bvh.nodes.is_empty();
+    (!empty).then(|| child(bvh.root, leaf))
 }

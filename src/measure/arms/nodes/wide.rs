@@ -2,8 +2,8 @@
 //! for Efficient CPU Ray Tracing*, 2014), and what the product walks.
 
 use super::{Child, Node, Stack, Tree, child, root};
-use crate::flat::Bvh;
 use crate::flat::bvh::WIDTH;
+use crate::flat::{self, Bvh};
 use crate::math::lanes::Lanes;
 use crate::trace::kernels::ray::WalkRay;
 
@@ -29,7 +29,7 @@ impl Node for Wide {
                 slots: [0; WIDTH],
             };
             for slot in 0..WIDTH {
-                let child = child([node.child[slot], node.kind[slot]], &leaf);
+                let child = child(flat::Child(node.child[slot]), &leaf);
                 wide.first[slot] = child.first;
                 wide.slots[slot] = child.slots;
             }
