@@ -5,7 +5,7 @@
 
 use luxel::build::bvh::{Accel, Built, Primitives, Quality, build_with};
 use luxel::flat::bvh::{STACK, WIDTH, kind};
-use luxel::flat::{BLOCK, Child, TriangleBlock};
+use luxel::flat::{BLOCK, Child, LinearNode, TriangleBlock};
 use luxel::math::{Aabb, Vec3};
 use std::fs;
 use std::time::Instant;

@@ -8,6 +8,11 @@
 //! the interleaving of Chen, Ailamaki, Gibbons and Mowry (*Improving hash join performance through prefetching*, 2004),
 //! stages those of wavefront path tracing (Laine, Karras and Aila 2013), in a cache's first level.
 //!
+//! Tried in a probe with leaves of four (Zen 3, million rays a second, camera | random rays, mesh of 3,686 triangles; here
+//! 8.5 | 7.1): each ray to its end before the next, branching on the number of children met, 9.2 | 5.3; in step, but branching so,
+//! 8.3 | 6.1; queues from which stages take batches of constant size, 7.7 | 5.6; box tests by fused operations with slack
+//! for their rounding, 7.9 | 6.5; the edge functions in a stage before that of the hits, here, 12 % more instructions.
+//!
 //! Deliberately absent: sorting of rays, whose order is the caller's.
 
 use super::batch::load3;
