@@ -32,6 +32,9 @@ const DONE: Child = Child(u32::MAX);
 /// Bytes of nodes and blocks from which on they are asked for ahead: half of a second-level cache.
 const COLD: usize = 1 << 18;
 
+/// Bytes that are asked for: a node, a block of triangles, or the bounds of a block of spheres.
+const FETCHED: usize = size_of::<TriangleBlock>();
+
 /// A ray in flight.
 #[derive(Clone, Copy)]
 #[repr(C, align(64))]
@@ -306,7 +309,10 @@ impl<'a, L: Lanes> Flight<'a, L> {
             slots: [idle; SLOTS],
             lists: Lists::EMPTY,
             stacks,
-            cold: size_of_val(&tree.bvh.nodes[..]) + size_of_val(tree.triangles) > COLD,
+            cold: size_of_val(&tree.bvh.nodes[..])
+                + size_of_val(tree.triangles)
+                + size_of_val(tree.spheres)
+                > COLD,
         }
     }
 
@@ -354,15 +360,17 @@ impl<'a, L: Lanes> Flight<'a, L> {
     fn go(&mut self, len: &mut [usize; 3], slot: u8) {
         let child = self.slots[slot as usize % SLOTS].child;
         if self.cold {
-            let address = if child.kind() == kind::TRIANGLES {
-                self.blocks
+            let address: *const u8 = match child.kind() {
+                kind::INNER => self.nodes.as_ptr().wrapping_add(child.index()).cast(),
+                kind::TRIANGLES => self.blocks.as_ptr().wrapping_add(child.index()).cast(),
+                _ => self
+                    .tree
+                    .spheres
                     .as_ptr()
                     .wrapping_add(child.index())
-                    .cast::<u8>()
-            } else {
-                self.nodes.as_ptr().wrapping_add(child.index()).cast()
+                    .cast(),
             };
-            L::prefetch(address, size_of::<TriangleBlock>());
+            L::prefetch(address, FETCHED);
         }
         self.lists.push(len, slot, child);
     }

@@ -315,7 +315,6 @@ fn sphere_leaf<L: Lanes, const ANY: bool>(
     best: &mut Best,
 ) -> bool {
     let zero = L::splat(0.0);
-    let wide = WideRay::splat::<L>(ray.origin_dir);
     let mut t = [0.0; BLOCK];
     for block in blocks {
         let mut hit = 0;
@@ -329,7 +328,8 @@ fn sphere_leaf<L: Lanes, const ANY: bool>(
                 L::Wide::load(&block.center[2][at..]),
             ];
             if L::bits(met) != 0
-                && let Some(root) = wide.root::<L>(center, L::Wide::load(&block.radius[at..]))
+                && let Some(root) = WideRay::splat::<L>(ray.origin_dir)
+                    .root::<L>(center, L::Wide::load(&block.radius[at..]))
             {
                 let clamped = root.min(own.far).max(own.near);
                 clamped.store(&mut t[at..]);
