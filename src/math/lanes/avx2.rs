@@ -75,6 +75,7 @@ impl Neg for F64x8 {
 
 impl Lanes for F32x8 {
     const N: usize = 8;
+    const PREFETCHES: bool = true;
     type Mask = Mask8;
     type Wide = F64x8;
 

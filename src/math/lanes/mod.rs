@@ -93,6 +93,9 @@ pub(crate) trait Lanes:
         len
     }
 
+    /// Whether [`Lanes::prefetch`] does anything.
+    const PREFETCHES: bool = false;
+
     /// Asks for the cache lines of `len` bytes from an address on, which need not be anything's.
     #[inline(always)]
     fn prefetch(_address: *const u8, _len: usize) {}

@@ -4,7 +4,7 @@
 use super::bound;
 use super::sphere::WideRay;
 use super::stream::{self, Scratch, Sink};
-use super::walk::{Best, EMPTY_STACK, LocalTrees, NoInstances, Tree};
+use super::walk::{Best, EMPTY_STACK, InstanceLeaves, LocalTrees, NoInstances, Tree};
 use crate::flat::{BLOCK, FlatScene, Spheres};
 use crate::math::lanes::{Lanes, WideLanes};
 use crate::trace::{Hits, Rays};
@@ -201,9 +201,31 @@ fn walk_world<L: Lanes, R: Sink, const T: bool, const S: bool, const I: bool, co
             scene,
             stack: &mut EMPTY_STACK.clone(),
         };
-        stream::walk_all::<L, _, R, T, S, ANY>(&tree, rays, sink, &mut instances, scratch);
+        walk_batch::<L, _, R, T, S, ANY>(&tree, rays, sink, &mut instances, scratch);
     } else {
-        stream::walk_all::<L, _, R, T, S, ANY>(&tree, rays, sink, &mut NoInstances, scratch);
+        walk_batch::<L, _, R, T, S, ANY>(&tree, rays, sink, &mut NoInstances, scratch);
+    }
+}
+
+#[inline(always)]
+fn walk_batch<
+    L: Lanes,
+    I: InstanceLeaves<L>,
+    R: Sink,
+    const T: bool,
+    const S: bool,
+    const ANY: bool,
+>(
+    tree: &Tree,
+    rays: &Rays,
+    sink: &mut R,
+    instances: &mut I,
+    scratch: &mut Scratch,
+) {
+    if stream::pays::<L>(tree) {
+        stream::walk_all::<L, I, R, T, S, ANY>(tree, rays, sink, instances, scratch);
+    } else {
+        stream::walk_each::<L, I, R, T, S, ANY>(tree, rays, sink, instances, &mut scratch.prepared);
     }
 }
 
