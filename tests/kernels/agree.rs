@@ -10,7 +10,7 @@ use luxel::trace::{Hits, Isa, Rays, occluded};
 
 /// Everything at once: two meshes, a soup with degenerate and broken triangles, equal triangles, spheres in the tree and
 /// out of it, and instances that turn, stretch and mirror.
-fn mixed() -> Parts {
+pub(crate) fn mixed() -> Parts {
     let mut rng = Rng(1);
     let mut triangles = Solid::uv_sphere(12, 16).triangles();
     let first = triangles.len() as u32;
@@ -49,7 +49,7 @@ fn mixed() -> Parts {
 }
 
 /// Rays of all kinds, the hostile included.
-fn hostile_rays(n: usize) -> Rays {
+pub(crate) fn hostile_rays(n: usize) -> Rays {
     let mut rng = Rng(2);
     let mut rays = Rays::default();
     let odd = [

@@ -6,6 +6,7 @@ mod exact;
 mod leave;
 #[path = "../support/mod.rs"]
 mod support;
+mod together;
 mod trees;
 
 use crate::support::Rng;

@@ -109,13 +109,17 @@ pub(super) fn world_errors<L: Lanes>(triangles: &Triangles, hits: &mut Hits) {
     }
 }
 
+/// A coordinate of a vertex relative to the first.
+#[inline(always)]
+fn edge<L: Lanes>(v: &[[[f32; MOST_LANES]; 3]; 3], vertex: usize, axis: usize) -> L::Wide {
+    L::load(&v[vertex][axis]).widen() - L::load(&v[0][axis]).widen()
+}
+
 #[inline(always)]
 fn world_error<L: Lanes>(v: &[[[f32; MOST_LANES]; 3]; 3], b1: L, b2: L) -> L {
     let b0 = L::splat(1.0) - b1 - b2;
-    let wide = |k: usize, axis: usize| L::load(&v[k][axis]).widen();
-    let edge = |k: usize, axis: usize| wide(k, axis) - wide(0, axis);
-    let (ax, ay, az) = (edge(1, 0), edge(1, 1), edge(1, 2));
-    let (bx, by, bz) = (edge(2, 0), edge(2, 1), edge(2, 2));
+    let (ax, ay, az) = (edge::<L>(v, 1, 0), edge::<L>(v, 1, 1), edge::<L>(v, 1, 2));
+    let (bx, by, bz) = (edge::<L>(v, 2, 0), edge::<L>(v, 2, 1), edge::<L>(v, 2, 2));
     let normal = [ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx];
     let one = L::Wide::splat(1.0);
     let mut sum = L::Wide::splat(0.0);

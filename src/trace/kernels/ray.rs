@@ -105,30 +105,41 @@ impl<L: Lanes> Setup<L> {
         let [x, y, z] = [dir[0].abs(), dir[1].abs(), dir[2].abs()];
         let y_first = x.lt(y);
         let z_first = x.max(y).lt(z);
-        let choose = |a, b, c| L::select(z_first, c, L::select(y_first, b, a));
-        let dz = choose(dir[0], dir[1], dir[2]);
+        let largest = [y_first, z_first];
+        let dz = choose(largest, dir[0], dir[1], dir[2]);
         Setup {
             inv: [
                 [inv[0] * nearer, inv[1] * nearer, inv[2] * nearer],
                 [inv[0] * farther, inv[1] * farther, inv[2] * farther],
             ],
             shear: [
-                -choose(dir[1], dir[2], dir[0]) / dz,
-                -choose(dir[2], dir[0], dir[1]) / dz,
+                -choose(largest, dir[1], dir[2], dir[0]) / dz,
+                -choose(largest, dir[2], dir[0], dir[1]) / dz,
                 one / dz,
             ],
-            kz: choose(L::splat(0.0), L::splat(1.0), L::splat(2.0)),
+            kz: choose(largest, L::splat(0.0), L::splat(1.0), L::splat(2.0)),
         }
     }
 
     /// Which rays can hit: all is finite, and the direction is not zero.
     #[inline(always)]
     pub(super) fn sound(origin: [L; 3], dir: [L; 3]) -> u32 {
-        let [zero, most] = [L::splat(0.0), L::splat(f32::MAX)];
-        let small = |v: [L; 3]| v[0].abs().le(most) & v[1].abs().le(most) & v[2].abs().le(most);
+        let zero = L::splat(0.0);
         let somewhere = zero.lt(dir[0].abs()) | zero.lt(dir[1].abs()) | zero.lt(dir[2].abs());
-        L::bits(small(origin) & small(dir) & somewhere)
+        L::bits(finite(origin) & finite(dir) & somewhere)
     }
+}
+
+/// The value of the axis that is the largest: y before x, z before both.
+#[inline(always)]
+fn choose<L: Lanes>([y, z]: [L::Mask; 2], of_x: L, of_y: L, of_z: L) -> L {
+    L::select(z, of_z, L::select(y, of_y, of_x))
+}
+
+#[inline(always)]
+fn finite<L: Lanes>(v: [L; 3]) -> L::Mask {
+    let most = L::splat(f32::MAX);
+    v[0].abs().le(most) & v[1].abs().le(most) & v[2].abs().le(most)
 }
 
 /// A ray in lanes, with what the slab and the triangle test want once.
