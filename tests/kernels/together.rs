@@ -8,7 +8,7 @@ use luxel::flat::{FlatScene, Spheres};
 use luxel::trace::{Hits, Isa, Rays, occluded};
 
 /// The tree's bytes from which on rays go together.
-const TOGETHER: usize = 16 << 20;
+const TOGETHER: usize = 8 << 20;
 
 /// Everything of the other tests, and more small triangles than caches hold.
 fn large() -> FlatScene {
