@@ -159,8 +159,8 @@ fn walk(built: &Built, [origin, dir]: [Vec3; 2]) -> [usize; 2] {
             continue;
         }
         if child.kind() == kind::TRIANGLES {
-            counts[1] += child.len();
-            for block in &built.triangles.blocks[child.index()..][..child.len()] {
+            counts[1] += child.run_len();
+            for block in &built.triangles.blocks[child.index()..][..child.run_len()] {
                 closest = (0..BLOCK).fold(closest, |t, lane| t.min(hit(block, lane, origin, dir)));
             }
             continue;

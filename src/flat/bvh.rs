@@ -71,7 +71,7 @@ impl Child {
     #[inline(always)]
     #[must_use]
     pub const fn rest(self) -> Option<Child> {
-        if self.len() == 1 {
+        if self.run_len() == 1 {
             None
         } else {
             Some(Child(self.0 - (1 << Child::INDEX_BITS) + 1))
@@ -88,7 +88,7 @@ impl Child {
     /// Length of the run.
     #[inline(always)]
     #[must_use]
-    pub const fn len(self) -> usize {
+    pub const fn run_len(self) -> usize {
         ((self.0 & !kind::MASK) >> Child::INDEX_BITS) as usize + 1
     }
 }

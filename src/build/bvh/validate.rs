@@ -49,7 +49,7 @@ struct Walk<'a> {
 
 impl Walk<'_> {
     fn child(&mut self, child: Child, bounds: &Aabb, depth: u32) -> Result<(), String> {
-        let run = child.index()..child.index() + child.len();
+        let run = child.index()..child.index() + child.run_len();
         match child.kind() {
             kind::INNER => self.inner(child.index(), bounds, depth),
             kind::TRIANGLES => run

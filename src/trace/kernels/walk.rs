@@ -202,7 +202,7 @@ pub(super) fn leaf<
     instances: &mut I,
     best: &mut Best,
 ) -> bool {
-    let run = child.index()..child.index() + child.len();
+    let run = child.index()..child.index() + child.run_len();
     match child.kind() {
         kind::TRIANGLES if T => triangle_leaf::<L, ANY>(tree, &tree.triangles[run], ray, best),
         kind::SPHERES if S => sphere_leaf::<L, ANY>(&tree.spheres[run], ray, best),

@@ -86,7 +86,7 @@ fn child(of: flat::Child, leaf: impl Fn(u32, u32) -> Child) -> Child {
             first: of.index() as u32,
             slots: 0,
         },
-        _ => leaf(of.index() as u32, of.len() as u32),
+        _ => leaf(of.index() as u32, of.run_len() as u32),
     }
 }
 
