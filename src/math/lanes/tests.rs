@@ -145,3 +145,51 @@ fn minimum_and_maximum_are_selects() {
     );
     assert_eq!(second(-0.0, 0.0), (0, 0));
 }
+
+/// The promise of [`Lanes::sort_falling`] for every set of lanes: the chosen items by falling keys, with bounds that are not
+/// above them and at most seven units in the last place below.
+#[inline(always)]
+fn sorts<L: Lanes>(keys: &[f32; 8]) {
+    let items = [10, 11, 12, 13, 14, 15, 16, 17];
+    for chosen in 0..256 {
+        let lanes: Vec<usize> = (0..8).filter(|lane| chosen >> lane & 1 == 1).collect();
+        let mut blended = [-1.0; 8];
+        lanes.iter().for_each(|&lane| blended[lane] = keys[lane]);
+        let (mut out, mut bounds) = ([0; 8], [0.0; 8]);
+        let len = L::sort_falling(&blended, chosen, &items, &mut out, &mut bounds);
+        assert_eq!(len, lanes.len());
+        let mut found: Vec<u32> = out[..len].to_vec();
+        found.sort_unstable();
+        let expected: Vec<u32> = lanes.iter().map(|&lane| items[lane]).collect();
+        assert_eq!(found, expected, "{chosen:08b}");
+        for (at, item) in out[..len].iter().enumerate() {
+            let key = keys[*item as usize - 10];
+            let below = key.to_bits().wrapping_sub(bounds[at].to_bits());
+            assert!(below < 8, "{key} has the bound {}", bounds[at]);
+            assert!(at == 0 || bounds[at] <= bounds[at - 1], "{chosen:08b}");
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
+fn sorts_on_avx2(keys: &[f32; 8]) {
+    sorts::<super::avx2::F32x8>(keys);
+}
+
+#[test]
+fn children_are_sorted_by_falling_keys() {
+    use crate::trace::isa::{Isa, Level};
+    let mut keys = [3.0, 0.0, 7.5, 0.125, 1e30, 2.0, 2.0, 1e-40];
+    for turn in 0..8 {
+        keys.rotate_left(1);
+        keys.swap(0, turn);
+        sorts::<f32>(&keys);
+        sorts::<portable::F32x8>(&keys);
+        #[cfg(target_arch = "x86_64")]
+        if Isa::available(Level::Avx2).is_some() {
+            // SAFETY: just asked.
+            unsafe { sorts_on_avx2(&keys) };
+        }
+    }
+}
