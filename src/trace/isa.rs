@@ -17,7 +17,7 @@ pub enum Level {
     Sse2,
     /// Eight lanes of AVX2.
     Avx2,
-    /// Sixteen lanes of AVX-512 (F, VL, DQ, BW) where rays lie in lanes, eight in the tree.
+    /// Sixteen lanes of AVX-512 (F, VL, DQ, BW) against spheres outside the tree; in the tree, AVX2.
     Avx512,
 }
 

@@ -4,6 +4,7 @@ mod agree;
 mod cracks;
 mod exact;
 mod leave;
+mod packets;
 #[path = "../support/mod.rs"]
 mod support;
 mod together;

@@ -75,7 +75,7 @@ impl Neg for F64x8 {
 
 impl Lanes for F32x8 {
     const N: usize = 8;
-    const PREFETCHES: bool = true;
+    const TOGETHER: bool = true;
     type Mask = Mask8;
     type Wide = F64x8;
 
@@ -130,6 +130,30 @@ impl Lanes for F32x8 {
     fn max(self, other: F32x8) -> F32x8 {
         // SAFETY: the machine has AVX, see the module.
         unsafe { F32x8(_mm256_max_ps(self.0, other.0)) }
+    }
+    #[inline(always)]
+    fn least(self) -> f32 {
+        // SAFETY: the machine has AVX, see the module.
+        unsafe {
+            let four = _mm_min_ps(
+                _mm256_castps256_ps128(self.0),
+                _mm256_extractf128_ps::<1>(self.0),
+            );
+            let two = _mm_min_ps(four, _mm_movehl_ps(four, four));
+            _mm_cvtss_f32(_mm_min_ss(two, _mm_movehdup_ps(two)))
+        }
+    }
+    #[inline(always)]
+    fn greatest(self) -> f32 {
+        // SAFETY: the machine has AVX, see the module.
+        unsafe {
+            let four = _mm_max_ps(
+                _mm256_castps256_ps128(self.0),
+                _mm256_extractf128_ps::<1>(self.0),
+            );
+            let two = _mm_max_ps(four, _mm_movehl_ps(four, four));
+            _mm_cvtss_f32(_mm_max_ss(two, _mm_movehdup_ps(two)))
+        }
     }
     #[inline(always)]
     fn widen(self) -> F64x8 {

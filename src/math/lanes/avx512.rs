@@ -145,6 +145,16 @@ impl Lanes for F32x16 {
         unsafe { F32x16(_mm512_max_ps(self.0, other.0)) }
     }
     #[inline(always)]
+    fn least(self) -> f32 {
+        // SAFETY: the machine has AVX-512, see the module.
+        unsafe { _mm512_reduce_min_ps(self.0) }
+    }
+    #[inline(always)]
+    fn greatest(self) -> f32 {
+        // SAFETY: the machine has AVX-512, see the module.
+        unsafe { _mm512_reduce_max_ps(self.0) }
+    }
+    #[inline(always)]
     fn widen(self) -> F64x16 {
         // SAFETY: the machine has AVX-512, see the module.
         unsafe {

@@ -9,7 +9,7 @@
 //! [`avx2`] or [`avx512`] exists only inside an entry that a [`crate::trace::Isa`] of that level guards**, which is the proof
 //! that the machine has the instructions. The module is private to the crate for that reason.
 //!
-//! Deliberately absent: integers, shuffles (but for the one order that traversal needs), reductions, fused and
+//! Deliberately absent: integers, shuffles (but for the one order that traversal needs), sums over lanes, fused and
 //! approximate operations.
 
 #[cfg(target_arch = "x86_64")]
@@ -59,6 +59,10 @@ pub(crate) trait Lanes:
     fn min(self, other: Self) -> Self;
     /// `if self > other { self } else { other }`: with NaN, `other`.
     fn max(self, other: Self) -> Self;
+    /// The smallest of the lanes, none of which is NaN.
+    fn least(self) -> f32;
+    /// The largest of the lanes, none of which is NaN.
+    fn greatest(self) -> f32;
     /// The same values in f64.
     fn widen(self) -> Self::Wide;
     /// Rounded to nearest, ties to even.
@@ -93,8 +97,8 @@ pub(crate) trait Lanes:
         len
     }
 
-    /// Whether [`Lanes::prefetch`] does anything.
-    const PREFETCHES: bool = false;
+    /// Whether many rays go together: lanes are cheap, and [`Lanes::prefetch`] does something.
+    const TOGETHER: bool = false;
 
     /// Asks for the cache lines of `len` bytes from an address on, which need not be anything's.
     #[inline(always)]

@@ -112,6 +112,14 @@ impl Lanes for F32x8 {
         F32x8(from_fn(|i| Lanes::max(self.0[i], other.0[i])))
     }
     #[inline(always)]
+    fn least(self) -> f32 {
+        self.0.into_iter().fold(f32::INFINITY, Lanes::min)
+    }
+    #[inline(always)]
+    fn greatest(self) -> f32 {
+        self.0.into_iter().fold(f32::NEG_INFINITY, Lanes::max)
+    }
+    #[inline(always)]
     fn widen(self) -> F64x8 {
         F64x8(self.0.map(f64::from))
     }

@@ -48,6 +48,14 @@ impl Lanes for f32 {
         if self > other { self } else { other }
     }
     #[inline(always)]
+    fn least(self) -> f32 {
+        self
+    }
+    #[inline(always)]
+    fn greatest(self) -> f32 {
+        self
+    }
+    #[inline(always)]
     fn widen(self) -> f64 {
         f64::from(self)
     }

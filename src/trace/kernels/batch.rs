@@ -1,16 +1,25 @@
-//! The kernels over a whole batch: rays in lanes against the spheres outside the tree, then one ray after the other
-//! through the tree. Everything here is inlined into an entry of `super::entries`.
+//! The kernels over a whole batch: rays in lanes against the spheres outside the tree, then through the tree. Everything
+//! here is inlined into an entry of `super::entries`.
 
 use super::bound;
+use super::entries::Walks;
+use super::group;
+use super::instances::{self, LocalTrees, NoInstances};
 use super::sphere::WideRay;
-use super::stream::{self, Scratch, Sink};
-use super::walk::{Best, EMPTY_STACK, InstanceLeaves, LocalTrees, NoInstances, Tree};
+use super::walk::{Best, Sink, Tree};
 use crate::flat::{BLOCK, FlatScene, Spheres};
 use crate::math::lanes::{Lanes, WideLanes};
 use crate::trace::{Hits, Rays};
 
 /// The widest lanes of all.
 pub(super) const MOST_LANES: usize = 16;
+
+/// Room for what walks keep, from batch to batch.
+#[derive(Default)]
+pub(super) struct Scratch {
+    groups: group::Scratch,
+    local: instances::Scratch,
+}
 
 /// The elements from `at` on; zeros beyond the end, with which no ray hits anything.
 #[inline(always)]
@@ -157,7 +166,7 @@ pub(super) fn looped_occluded<L: Lanes>(spheres: &Spheres, rays: &Rays, out: &mu
 
 /// Every ray through the world's tree. `hits` hold what the looped spheres left.
 #[inline(always)]
-pub(super) fn tree_closest<L: Lanes, const T: bool, const S: bool, const I: bool>(
+pub(super) fn tree_closest<L: Walks, const T: bool, const S: bool, const I: bool>(
     scene: &FlatScene,
     rays: &Rays,
     hits: &mut Hits,
@@ -172,7 +181,7 @@ pub(super) fn tree_closest<L: Lanes, const T: bool, const S: bool, const I: bool
 
 /// Whether anything in the world's tree is hit below `t_max`; rays that are blocked already stay so.
 #[inline(always)]
-pub(super) fn tree_occluded<L: Lanes, const T: bool, const S: bool, const I: bool>(
+pub(super) fn tree_occluded<L: Walks, const T: bool, const S: bool, const I: bool>(
     scene: &FlatScene,
     rays: &Rays,
     out: &mut [bool],
@@ -183,7 +192,7 @@ pub(super) fn tree_occluded<L: Lanes, const T: bool, const S: bool, const I: boo
 }
 
 #[inline(always)]
-fn walk_world<L: Lanes, R: Sink, const T: bool, const S: bool, const I: bool, const ANY: bool>(
+fn walk_world<L: Walks, R: Sink, const T: bool, const S: bool, const I: bool, const ANY: bool>(
     scene: &FlatScene,
     rays: &Rays,
     sink: &mut R,
@@ -199,33 +208,13 @@ fn walk_world<L: Lanes, R: Sink, const T: bool, const S: bool, const I: bool, co
     if I {
         let mut instances = LocalTrees {
             scene,
-            stack: &mut EMPTY_STACK.clone(),
+            scratch: &mut scratch.local,
         };
-        walk_batch::<L, _, R, T, S, ANY>(&tree, rays, sink, &mut instances, scratch);
+        let scratch = &mut scratch.groups;
+        group::walk_batch::<L, _, R, T, S, ANY>(&tree, rays, sink, &mut instances, scratch);
     } else {
-        walk_batch::<L, _, R, T, S, ANY>(&tree, rays, sink, &mut NoInstances, scratch);
-    }
-}
-
-#[inline(always)]
-fn walk_batch<
-    L: Lanes,
-    I: InstanceLeaves<L>,
-    R: Sink,
-    const T: bool,
-    const S: bool,
-    const ANY: bool,
->(
-    tree: &Tree,
-    rays: &Rays,
-    sink: &mut R,
-    instances: &mut I,
-    scratch: &mut Scratch,
-) {
-    if stream::pays::<L>(tree) {
-        stream::walk_all::<L, I, R, T, S, ANY>(tree, rays, sink, instances, scratch);
-    } else {
-        stream::walk_each::<L, I, R, T, S, ANY>(tree, rays, sink, instances, &mut scratch.prepared);
+        let scratch = &mut scratch.groups;
+        group::walk_batch::<L, _, R, T, S, ANY>(&tree, rays, sink, &mut NoInstances, scratch);
     }
 }
 

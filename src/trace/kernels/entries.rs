@@ -5,103 +5,216 @@
     reason = "an entry is called on the proof that the machine has its instructions"
 )]
 
-use super::batch;
-use super::stream::Scratch;
-use crate::flat::{FlatScene, Spheres};
-use crate::math::lanes::portable;
+use super::batch::{self, Scratch};
+use super::instances::InstanceLeaves;
+use super::packet::{self, Bests, Packet};
+use super::ray::WalkRay;
+use super::stack::Stack;
+use super::walk::{self, Best, Tree};
+use crate::flat::{Child, FlatScene, Spheres};
+use crate::math::lanes::{Lanes, portable};
 #[cfg(target_arch = "x86_64")]
 use crate::math::lanes::{avx2 as avx2_lanes, avx512 as avx512_lanes};
-use crate::trace::{Hits, Rays};
+use crate::trace::isa::Level;
+use crate::trace::{Hits, Isa, Rays};
 use std::cell::RefCell;
 
-/// A module of entries: lanes for rays against looped spheres, lanes for children and primitives in the tree, features.
-macro_rules! entries {
-    ($level:ident, $rays:ty, $tree:ty $(, $features:literal)?) => {
-        pub(super) mod $level {
-            use super::*;
+/// The entries for spheres outside the tree: lanes for rays, features.
+macro_rules! looped {
+    ($lanes:ty $(, $features:literal)?) => {
+        $(#[target_feature(enable = $features)])?
+        #[inline(never)]
+        pub(in super::super) fn looped_closest(spheres: &Spheres, rays: &Rays, hits: &mut Hits) {
+            batch::looped_closest::<$lanes>(spheres, rays, hits);
+        }
 
-            $(#[target_feature(enable = $features)])?
-            #[inline(never)]
-            pub(in super::super) fn looped_closest(spheres: &Spheres, rays: &Rays, hits: &mut Hits) {
-                batch::looped_closest::<$rays>(spheres, rays, hits);
-            }
-
-            $(#[target_feature(enable = $features)])?
-            #[inline(never)]
-            pub(in super::super) fn looped_occluded(spheres: &Spheres, rays: &Rays, out: &mut [bool]) {
-                batch::looped_occluded::<$rays>(spheres, rays, out);
-            }
-
-            $(#[target_feature(enable = $features)])?
-            #[inline(never)]
-            pub(in super::super) fn tree_closest<const T: bool, const S: bool, const I: bool>(
-                scene: &FlatScene,
-                rays: &Rays,
-                hits: &mut Hits,
-                scratch: &mut Scratch,
-            ) {
-                batch::tree_closest::<$tree, T, S, I>(scene, rays, hits, scratch);
-            }
-
-            $(#[target_feature(enable = $features)])?
-            #[inline(never)]
-            pub(in super::super) fn tree_occluded<const T: bool, const S: bool, const I: bool>(
-                scene: &FlatScene,
-                rays: &Rays,
-                out: &mut [bool],
-                scratch: &mut Scratch,
-            ) {
-                batch::tree_occluded::<$tree, T, S, I>(scene, rays, out, scratch);
-            }
+        $(#[target_feature(enable = $features)])?
+        #[inline(never)]
+        pub(in super::super) fn looped_occluded(spheres: &Spheres, rays: &Rays, out: &mut [bool]) {
+            batch::looped_occluded::<$lanes>(spheres, rays, out);
         }
     };
 }
 
-entries!(scalar, f32, f32);
-entries!(sse2, portable::F32x8, portable::F32x8);
-#[cfg(target_arch = "x86_64")]
-entries!(
-    avx2,
-    avx2_lanes::F32x8,
-    avx2_lanes::F32x8,
-    "avx2,bmi1,bmi2,lzcnt,popcnt"
-);
-#[cfg(target_arch = "x86_64")]
-entries!(
-    avx512,
-    avx512_lanes::F32x16,
-    avx2_lanes::F32x8,
-    "avx2,bmi1,bmi2,lzcnt,popcnt,avx512f,avx512vl,avx512dq,avx512bw"
-);
+/// What the entries for trees call: functions of their own, so that each is compiled once and not wherever it is called.
+pub(super) trait Walks: Lanes {
+    /// [`walk::walk`].
+    fn walk<I: InstanceLeaves<Self>, const T: bool, const S: bool, const ANY: bool>(
+        tree: &Tree,
+        start: Child,
+        ray: &WalkRay<Self>,
+        instances: &mut I,
+        stack: &mut Stack,
+        best: &mut Best,
+    ) -> bool;
 
-/// Calls an entry of the level of an [`Isa`](crate::trace::Isa).
-macro_rules! on_isa {
-    ($isa:expr, $entry:ident $(::<$($flag:literal),*>)? ($($argument:expr),*)) => {{
-        use crate::trace::isa::Level;
-        use crate::trace::kernels::entries;
-        match $isa.level() {
-            Level::Scalar => entries::scalar::$entry $(::<$($flag),*>)? ($($argument),*),
-            // SAFETY: the value is the proof that this machine has the instructions.
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx2 => unsafe { entries::avx2::$entry $(::<$($flag),*>)? ($($argument),*) },
-            // SAFETY: likewise.
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx512 => unsafe { entries::avx512::$entry $(::<$($flag),*>)? ($($argument),*) },
-            _ => entries::sse2::$entry $(::<$($flag),*>)? ($($argument),*),
-        }
-    }};
+    /// [`packet::walk`].
+    fn walk_packet<I: InstanceLeaves<Self>, const T: bool, const S: bool, const ANY: bool>(
+        tree: &Tree,
+        packet: &Packet<Self>,
+        instances: &mut I,
+        scratch: &mut packet::Scratch,
+        floor: &Self,
+        best: &mut Bests<Self>,
+    );
 }
 
-/// Calls an entry with the constants of what the tree holds: triangles, spheres, instances.
+/// The entries for trees: lanes for children, primitives and packets of rays, features.
+macro_rules! tree {
+    ($lanes:ty $(, $features:literal)?) => {
+        $(#[target_feature(enable = $features)])?
+        #[inline(never)]
+        fn walk<I: InstanceLeaves<$lanes>, const T: bool, const S: bool, const ANY: bool>(
+            tree: &Tree,
+            start: Child,
+            ray: &WalkRay<$lanes>,
+            instances: &mut I,
+            stack: &mut Stack,
+            best: &mut Best,
+        ) -> bool {
+            walk::walk::<$lanes, I, T, S, ANY>(tree, start, ray, instances, stack, best)
+        }
+
+        $(#[target_feature(enable = $features)])?
+        #[inline(never)]
+        fn walk_packet<I: InstanceLeaves<$lanes>, const T: bool, const S: bool, const ANY: bool>(
+            tree: &Tree,
+            packet: &Packet<$lanes>,
+            instances: &mut I,
+            scratch: &mut packet::Scratch,
+            floor: &$lanes,
+            best: &mut Bests<$lanes>,
+        ) {
+            packet::walk::<$lanes, I, T, S, ANY>(tree, packet, instances, scratch, *floor, best);
+        }
+
+        #[allow(unused_unsafe, reason = "safe where no feature is enabled")]
+        impl Walks for $lanes {
+            #[inline(always)]
+            fn walk<I: InstanceLeaves<$lanes>, const T: bool, const S: bool, const ANY: bool>(
+                tree: &Tree,
+                start: Child,
+                ray: &WalkRay<$lanes>,
+                instances: &mut I,
+                stack: &mut Stack,
+                best: &mut Best,
+            ) -> bool {
+                // SAFETY: lanes exist where the machine has their instructions, see `math::lanes`.
+                unsafe { walk::<I, T, S, ANY>(tree, start, ray, instances, stack, best) }
+            }
+
+            #[inline(always)]
+            fn walk_packet<
+                I: InstanceLeaves<$lanes>,
+                const T: bool,
+                const S: bool,
+                const ANY: bool,
+            >(
+                tree: &Tree,
+                packet: &Packet<$lanes>,
+                instances: &mut I,
+                scratch: &mut packet::Scratch,
+                floor: &$lanes,
+                best: &mut Bests<$lanes>,
+            ) {
+                // SAFETY: likewise.
+                unsafe {
+                    walk_packet::<I, T, S, ANY>(tree, packet, instances, scratch, floor, best);
+                }
+            }
+        }
+
+        $(#[target_feature(enable = $features)])?
+        #[inline(never)]
+        pub(in super::super) fn tree_closest<const T: bool, const S: bool, const I: bool>(
+            scene: &FlatScene,
+            rays: &Rays,
+            hits: &mut Hits,
+            scratch: &mut Scratch,
+        ) {
+            batch::tree_closest::<$lanes, T, S, I>(scene, rays, hits, scratch);
+        }
+
+        $(#[target_feature(enable = $features)])?
+        #[inline(never)]
+        pub(in super::super) fn tree_occluded<const T: bool, const S: bool, const I: bool>(
+            scene: &FlatScene,
+            rays: &Rays,
+            out: &mut [bool],
+            scratch: &mut Scratch,
+        ) {
+            batch::tree_occluded::<$lanes, T, S, I>(scene, rays, out, scratch);
+        }
+    };
+}
+
+pub(super) mod scalar {
+    use super::*;
+    looped!(f32);
+    tree!(f32);
+}
+
+pub(super) mod sse2 {
+    use super::*;
+    looped!(portable::F32x8);
+    tree!(portable::F32x8);
+}
+
+#[cfg(target_arch = "x86_64")]
+pub(super) mod avx2 {
+    use super::*;
+    looped!(avx2_lanes::F32x8, "avx2,bmi1,bmi2,lzcnt,popcnt");
+    tree!(avx2_lanes::F32x8, "avx2,bmi1,bmi2,lzcnt,popcnt");
+}
+
+/// Trees are walked by the entries of AVX2: children, primitives and packets come in eights.
+#[cfg(target_arch = "x86_64")]
+pub(super) mod avx512 {
+    use super::*;
+    looped!(
+        avx512_lanes::F32x16,
+        "avx2,bmi1,bmi2,lzcnt,popcnt,avx512f,avx512vl,avx512dq,avx512bw"
+    );
+}
+
+/// Calls an entry for spheres outside the tree.
+macro_rules! on_isa {
+    ($isa:expr, $entry:ident($($argument:expr),*)) => {
+        match $isa.level() {
+            Level::Scalar => scalar::$entry($($argument),*),
+            // SAFETY: the value is the proof that this machine has the instructions.
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx2 => unsafe { avx2::$entry($($argument),*) },
+            // SAFETY: likewise.
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx512 => unsafe { avx512::$entry($($argument),*) },
+            _ => sse2::$entry($($argument),*),
+        }
+    };
+}
+
+/// Calls an entry for trees with the constants of what the tree holds, triangles, spheres, instances: of triangles alone and of
+/// spheres alone, else all that there can be, since every set costs a compiler seconds.
 macro_rules! on_tree {
-    ($tree:expr, $isa:expr, $entry:ident($($argument:expr),*)) => {
-        match $tree {
-            (_, false, false) => on_isa!($isa, $entry::<true, false, false>($($argument),*)),
-            (_, false, true) => on_isa!($isa, $entry::<true, false, true>($($argument),*)),
-            (false, true, false) => on_isa!($isa, $entry::<false, true, false>($($argument),*)),
-            (false, true, true) => on_isa!($isa, $entry::<false, true, true>($($argument),*)),
-            (true, true, false) => on_isa!($isa, $entry::<true, true, false>($($argument),*)),
-            (true, true, true) => on_isa!($isa, $entry::<true, true, true>($($argument),*)),
+    ($isa:expr, $scene:expr, $entry:ident($($argument:expr),*)) => {
+        match ($isa.level(), holds($scene)) {
+            (Level::Scalar, _) => scalar::$entry::<true, true, true>($($argument),*),
+            #[cfg(target_arch = "x86_64")]
+            (Level::Avx2 | Level::Avx512, (_, false, false)) => {
+                // SAFETY: the value is the proof that this machine has the instructions.
+                unsafe { avx2::$entry::<true, false, false>($($argument),*) }
+            }
+            #[cfg(target_arch = "x86_64")]
+            (Level::Avx2 | Level::Avx512, (false, true, false)) => {
+                // SAFETY: likewise.
+                unsafe { avx2::$entry::<false, true, false>($($argument),*) }
+            }
+            #[cfg(target_arch = "x86_64")]
+            (Level::Avx2 | Level::Avx512, _) => {
+                // SAFETY: likewise.
+                unsafe { avx2::$entry::<true, true, true>($($argument),*) }
+            }
+            _ => sse2::$entry::<true, true, true>($($argument),*),
         }
     };
 }
@@ -112,37 +225,25 @@ thread_local! {
 }
 
 /// Closest hits with the looped spheres; `hits.t` are limits.
-pub(super) fn looped_closest(isa: crate::trace::Isa, s: &Spheres, rays: &Rays, hits: &mut Hits) {
+pub(super) fn looped_closest(isa: Isa, s: &Spheres, rays: &Rays, hits: &mut Hits) {
     on_isa!(isa, looped_closest(s, rays, hits));
 }
 
 /// Occlusion by the looped spheres.
-pub(super) fn looped_occluded(isa: crate::trace::Isa, s: &Spheres, rays: &Rays, out: &mut [bool]) {
+pub(super) fn looped_occluded(isa: Isa, s: &Spheres, rays: &Rays, out: &mut [bool]) {
     on_isa!(isa, looped_occluded(s, rays, out));
 }
 
 /// Closest hits in the tree, nearer than those of the looped spheres.
-pub(super) fn tree_closest(
-    isa: crate::trace::Isa,
-    scene: &FlatScene,
-    rays: &Rays,
-    hits: &mut Hits,
-) {
-    SCRATCH.with_borrow_mut(|scratch| {
-        on_tree!(holds(scene), isa, tree_closest(scene, rays, hits, scratch))
-    });
+pub(super) fn tree_closest(isa: Isa, scene: &FlatScene, rays: &Rays, hits: &mut Hits) {
+    SCRATCH
+        .with_borrow_mut(|scratch| on_tree!(isa, scene, tree_closest(scene, rays, hits, scratch)));
 }
 
 /// Occlusion by the tree.
-pub(super) fn tree_occluded(
-    isa: crate::trace::Isa,
-    scene: &FlatScene,
-    rays: &Rays,
-    out: &mut [bool],
-) {
-    SCRATCH.with_borrow_mut(|scratch| {
-        on_tree!(holds(scene), isa, tree_occluded(scene, rays, out, scratch))
-    });
+pub(super) fn tree_occluded(isa: Isa, scene: &FlatScene, rays: &Rays, out: &mut [bool]) {
+    SCRATCH
+        .with_borrow_mut(|scratch| on_tree!(isa, scene, tree_occluded(scene, rays, out, scratch)));
 }
 
 /// What the world's tree holds. From its buffers rather than from `Needs`, which also counts triangles of instances.

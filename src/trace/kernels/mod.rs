@@ -9,6 +9,10 @@
 //! - Rays with anything not finite, without direction, or without a positive `t_max` hit nothing. Degenerate triangles are
 //!   never hit.
 //!
+//! A batch goes through the tree in up to three ways, which `group` chooses: rays that go one way from one place as packets,
+//! eight rays against one box or primitive (`packet`); the others each by itself, one ray against eight boxes or primitives
+//! (`walk`), or, where the tree outgrows the caches, that way but many at a time (`stream`). All of them run the same tests.
+//!
 //! Generic over lanes and over what the tree holds, chosen once per batch; see `entries` for what runs where.
 #![allow(
     clippy::needless_range_loop,
@@ -18,8 +22,13 @@
 mod batch;
 mod bound;
 mod entries;
+mod group;
+mod instances;
+mod packet;
+mod prepared;
 pub(crate) mod ray;
 pub(crate) mod sphere;
+mod stack;
 mod stream;
 pub(crate) mod triangle;
 mod walk;

@@ -1,5 +1,6 @@
-//! One ray, ready to be tested against blocks: everything that costs once per ray.
+//! Rays, ready to be tested: everything that costs once per ray.
 
+use super::batch::MOST_LANES;
 use crate::flat::BLOCK;
 use crate::math::lanes::Lanes;
 
@@ -130,6 +131,22 @@ impl<L: Lanes> Setup<L> {
     }
 }
 
+/// Kinds of directions that [`cells`] tells apart.
+pub(super) const CELLS: usize = 32;
+
+/// The octant and the kz of directions, a number below [`CELLS`].
+#[inline(always)]
+pub(super) fn cells<L: Lanes>(dir: [L; 3]) -> L {
+    let zero = L::splat(0.0);
+    let [x, y, z] = [dir[0].abs(), dir[1].abs(), dir[2].abs()];
+    let largest = [x.lt(y), x.max(y).lt(z)];
+    let mut cell = choose(largest, zero, L::splat(8.0), L::splat(16.0));
+    for axis in 0..3 {
+        cell = cell + L::select(dir[axis].lt(zero), L::splat((1 << axis) as f32), zero);
+    }
+    cell
+}
+
 /// The value of the axis that is the largest: y before x, z before both.
 #[inline(always)]
 fn choose<L: Lanes>([y, z]: [L::Mask; 2], of_x: L, of_y: L, of_z: L) -> L {
@@ -142,17 +159,18 @@ fn finite<L: Lanes>(v: [L; 3]) -> L::Mask {
     v[0].abs().le(most) & v[1].abs().le(most) & v[2].abs().le(most)
 }
 
-/// A ray in lanes, with what the slab and the triangle test want once.
+/// Rays in lanes, with what the slab and the triangle test want once: one ray in all lanes, against as many boxes or
+/// primitives, or a packet, rays with one octant and one kz, against one box or primitive.
 #[derive(Clone, Copy)]
 pub(crate) struct WalkRay<L> {
     /// Origin, one axis after the other.
     pub(crate) origin: [L; 3],
+    /// Direction as given.
+    pub(crate) dir: [L; 3],
     /// 1 / d for near planes and for far ones.
-    inv: [[L; 3]; 2],
+    pub(super) inv: [[L; 3]; 2],
     /// −d[kx] / d[kz], −d[ky] / d[kz], 1 / d[kz].
     pub(crate) shear: [L; 3],
-    /// Origin and direction as given.
-    pub(crate) origin_dir: [[f32; 3]; 2],
     pub(crate) planes: Planes,
     /// kx, ky, kz of the watertight test.
     pub(crate) axes: [Axis; 3],
@@ -173,27 +191,55 @@ impl<L: Lanes> WalkRay<L> {
         sound.then(|| WalkRay::prepared(origin, dir, &Setup::<f32>::new(dir)))
     }
 
-    /// A ray whose setup is done.
+    /// A ray whose setup is done, in all lanes.
     #[inline(always)]
     pub(super) fn prepared(origin: [f32; 3], dir: [f32; 3], setup: &Setup<f32>) -> WalkRay<L> {
-        let sign = |axis: usize| (dir[axis].to_bits() >> 31) as usize;
-        WalkRay {
-            origin: splat(origin),
+        let lanes = Setup {
             inv: [splat(setup.inv[0]), splat(setup.inv[1])],
             shear: splat(setup.shear),
-            origin_dir: [origin, dir],
+            kz: L::splat(setup.kz),
+        };
+        WalkRay::packet(splat(origin), splat(dir), &lanes)
+    }
+
+    /// Rays with the octant and the kz of the first, whose setup is done.
+    #[inline(always)]
+    pub(super) fn packet(origin: [L; 3], dir: [L; 3], setup: &Setup<L>) -> WalkRay<L> {
+        let first = lane_of(dir, 0);
+        let [kz, ..] = lane_of([setup.kz; 3], 0);
+        let sign = |axis: usize| (first[axis].to_bits() >> 31) as usize;
+        WalkRay {
+            origin,
+            dir,
+            inv: setup.inv,
+            shear: setup.shear,
             planes: PLANES[sign(0) | sign(1) << 1 | sign(2) << 2],
-            axes: AXES[if setup.kz > 1.5 {
-                2
-            } else {
-                usize::from(setup.kz > 0.5)
-            }],
+            axes: AXES[if kz > 1.5 { 2 } else { usize::from(kz > 0.5) }],
         }
+    }
+
+    /// The ray of a lane in all lanes.
+    #[inline(always)]
+    pub(super) fn alone(&self, lane: usize) -> WalkRay<L> {
+        let of = |x: [L; 3]| splat(lane_of(x, lane));
+        WalkRay {
+            origin: of(self.origin),
+            dir: of(self.dir),
+            inv: [of(self.inv[0]), of(self.inv[1])],
+            shear: of(self.shear),
+            ..*self
+        }
+    }
+
+    /// Origin and direction of the ray in a lane.
+    #[inline(always)]
+    pub(super) fn lane(&self, lane: usize) -> [[f32; 3]; 2] {
+        [lane_of(self.origin, lane), lane_of(self.dir, lane)]
     }
 
     /// Whether the direction's sign bit is set on the axis.
     #[inline(always)]
-    fn negative(&self, axis: usize) -> bool {
+    pub(super) fn negative(&self, axis: usize) -> bool {
         self.planes.near[axis] as u8 > self.planes.far[axis] as u8
     }
 
@@ -251,6 +297,22 @@ impl<L: Lanes> Interval<L> {
     pub(crate) fn meets(&self, limit: L) -> L::Mask {
         self.near.le(self.far.min(limit))
     }
+}
+
+/// A lane of three.
+#[inline(always)]
+fn lane_of<L: Lanes>(x: [L; 3], lane: usize) -> [f32; 3] {
+    let mut lanes = [[0.0; MOST_LANES]; 3];
+    for axis in 0..3 {
+        x[axis].store(&mut lanes[axis]);
+    }
+    let lane = lane % MOST_LANES;
+    [lanes[0][lane], lanes[1][lane], lanes[2][lane]]
+}
+
+#[inline(always)]
+pub(super) fn dot<L: Lanes>(a: [L; 3], b: [L; 3]) -> L {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[inline(always)]

@@ -5,7 +5,6 @@
 //! Gems, ch. 7), and the roots are c / q and q / a with `q = −(b + sign(b) √disc)`, which cancels nothing. In f64 t is right
 //! to the last bit of f32 for radii from 10⁻⁴ to 10⁸; in f32 every known form loses three to six digits on walls.
 
-use super::ray::splat;
 use crate::math::lanes::{Lanes, WideLanes};
 
 /// Rays in f64 lanes with what costs once per ray.
@@ -20,7 +19,7 @@ pub(crate) struct WideRay<W> {
 impl<W: WideLanes> WideRay<W> {
     /// Any ray: one that is not finite or has no direction gives NaN, which hits nothing.
     #[inline(always)]
-    pub(super) fn new<L: Lanes<Wide = W>>(origin: [L; 3], dir: [L; 3]) -> WideRay<W> {
+    pub(crate) fn new<L: Lanes<Wide = W>>(origin: [L; 3], dir: [L; 3]) -> WideRay<W> {
         let origin = [origin[0].widen(), origin[1].widen(), origin[2].widen()];
         let dir = [dir[0].widen(), dir[1].widen(), dir[2].widen()];
         let a = dot(dir, dir);
@@ -30,12 +29,6 @@ impl<W: WideLanes> WideRay<W> {
             a,
             inv_a: W::splat(1.0) / a,
         }
-    }
-
-    /// One ray in all lanes.
-    #[inline(always)]
-    pub(crate) fn splat<L: Lanes<Wide = W>>([origin, dir]: [[f32; 3]; 2]) -> WideRay<W> {
-        WideRay::new::<L>(splat(origin), splat(dir))
     }
 
     /// The smallest root above 0 of each lane, rounded to f32; nothing if no lane has a root. Lanes without one hold a t

@@ -13,12 +13,14 @@
 //! 8.3 | 6.1; queues from which stages take batches of constant size, 7.7 | 5.6; box tests by fused operations with slack
 //! for their rounding, 7.9 | 6.5; the edge functions in a stage before that of the hits, here, 12 % more instructions.
 //!
-//! Deliberately absent: sorting of rays, whose order is the caller's.
+//! Deliberately absent: the choice of the rays, which is [`group`](super::group)'s.
 
-use super::batch::load3;
+use super::instances::InstanceLeaves;
+use super::prepared::{AHEAD, Prepared};
 use super::ray::{Setup, WalkRay};
-use super::walk::{self, Best, InstanceLeaves, Tree};
-use crate::flat::bvh::{STACK, WIDTH, kind};
+use super::stack::{DONE, FETCHED, Stack};
+use super::walk::{self, Best, Sink, Tree};
+use crate::flat::bvh::{WIDTH, kind};
 use crate::flat::{Child, LinearNode, TriangleBlock};
 use crate::math::lanes::Lanes;
 use crate::trace::Rays;
@@ -26,16 +28,10 @@ use crate::trace::Rays;
 /// Rays in flight. 16 leave a memory's latency unhidden, 64 leave the first-level cache.
 pub(super) const SLOTS: usize = 32;
 
-/// At the bottom of every stack: the ray is done.
-const DONE: Child = Child(u32::MAX);
-
 /// Bytes of nodes and blocks from which on rays wait for memory, so that going together pays: a quarter of a third-level
 /// cache. Zen 3, together over each by itself, camera rays to random ones: 0.74 to 1.09 at 4 MB, 0.71 to 1.67 at 11 MB (a
 /// soup of thin triangles), 0.91 to 1.74 at 76 MB.
 const COLD: usize = 8 << 20;
-
-/// Bytes that are asked for: a node, a block of triangles, or the bounds of a block of spheres.
-const FETCHED: usize = size_of::<TriangleBlock>();
 
 /// A ray in flight.
 #[derive(Clone, Copy)]
@@ -53,105 +49,6 @@ struct Slot<L> {
     best: Best,
     /// Index in the batch.
     ray_index: usize,
-}
-
-/// Children put off by one ray. A stage writes eight entries at once, hence as many beyond the last.
-#[derive(Clone, Copy)]
-struct Stack {
-    children: [u32; STACK + WIDTH],
-    /// Where the ray enters them, or less.
-    entries: [f32; STACK + WIDTH],
-}
-
-impl Stack {
-    /// Nothing but [`DONE`], which every ray enters.
-    const BOTTOM: Stack = Stack {
-        children: [DONE.0; STACK + WIDTH],
-        entries: [f32::NEG_INFINITY; STACK + WIDTH],
-    };
-}
-
-/// Rays of a batch whose setup is done.
-const AHEAD: usize = 64;
-
-/// The setup of the next rays of a batch, `[value][ray]`.
-pub(super) struct Prepared {
-    /// Origin, direction, near and far 1 / d, shear, kz.
-    values: [[f32; AHEAD]; 16],
-    /// Which rays can hit.
-    sound: [u32; AHEAD],
-}
-
-/// Room for what [`walk_all`] keeps of its rays, from batch to batch.
-pub(super) struct Scratch {
-    stacks: Box<[Stack; SLOTS]>,
-    pub(super) prepared: Box<Prepared>,
-}
-
-impl Default for Scratch {
-    fn default() -> Scratch {
-        Scratch {
-            stacks: Box::new([Stack::BOTTOM; SLOTS]),
-            prepared: Box::new(Prepared {
-                values: [[0.0; AHEAD]; 16],
-                sound: [0; AHEAD],
-            }),
-        }
-    }
-}
-
-impl Prepared {
-    /// Sets up the rays from `first` on.
-    #[inline(always)]
-    fn fill<L: Lanes>(&mut self, rays: &Rays, first: usize) {
-        let mut at = 0;
-        while at < AHEAD && first + at < rays.len() {
-            let origin = load3::<L>(&rays.origin, first + at);
-            let dir = load3::<L>(&rays.dir, first + at);
-            let setup = Setup::new(dir);
-            let [near, far] = setup.inv;
-            let values = [
-                origin[0],
-                origin[1],
-                origin[2],
-                dir[0],
-                dir[1],
-                dir[2],
-                near[0],
-                near[1],
-                near[2],
-                far[0],
-                far[1],
-                far[2],
-                setup.shear[0],
-                setup.shear[1],
-                setup.shear[2],
-                setup.kz,
-            ];
-            for (to, value) in self.values.iter_mut().zip(values) {
-                value.store(&mut to[at..]);
-            }
-            let sound = Setup::sound(origin, dir);
-            for lane in 0..L::N {
-                self.sound[(at + lane) % AHEAD] = sound >> lane & 1;
-            }
-            at += L::N;
-        }
-    }
-
-    /// Ray `k` of those that were set up last.
-    #[inline(always)]
-    fn ray<L: Lanes>(&self, k: usize) -> WalkRay<L> {
-        let k = k % AHEAD;
-        let v = |row: usize| self.values[row][k];
-        let setup = Setup {
-            inv: [[v(6), v(7), v(8)], [v(9), v(10), v(11)]],
-            shear: [v(12), v(13), v(14)],
-            kz: v(15),
-        };
-        let (origin, dir) = ([v(0), v(1), v(2)], [v(3), v(4), v(5)]);
-        WalkRay::prepared(origin, dir, &setup)
-    }
 }
 
 /// Slots that wait for a stage.
@@ -215,13 +112,19 @@ impl Lists {
     }
 }
 
-/// Where rays come from and go to.
-pub(super) trait Sink {
-    /// What is known of a ray before the walk: its limit, or the closest hit that it has already. Nothing for a ray that
-    /// is not to be walked.
-    fn best(&self, index: usize) -> Option<Best>;
-    /// What became of a ray.
-    fn done(&mut self, index: usize, best: &Best);
+/// Room for what [`walk_all`] keeps of its rays, from batch to batch.
+pub(super) struct Scratch {
+    pub(super) stacks: Box<[Stack; SLOTS]>,
+    pub(super) prepared: Box<Prepared>,
+}
+
+impl Default for Scratch {
+    fn default() -> Scratch {
+        Scratch {
+            stacks: Box::new([Stack::BOTTOM; SLOTS]),
+            prepared: Box::default(),
+        }
+    }
 }
 
 /// Rays in flight through one tree.
@@ -239,42 +142,11 @@ struct Flight<'a, L> {
 pub(super) fn pays<L: Lanes>(tree: &Tree) -> bool {
     let bytes =
         size_of_val(&tree.bvh.nodes[..]) + size_of_val(tree.triangles) + size_of_val(tree.spheres);
-    L::PREFETCHES && bytes > COLD
+    L::TOGETHER && bytes > COLD
 }
 
-/// Walks the rays of a batch through the tree, each by itself.
-#[inline(always)]
-pub(super) fn walk_each<
-    L: Lanes,
-    I: InstanceLeaves<L>,
-    R: Sink,
-    const T: bool,
-    const S: bool,
-    const ANY: bool,
->(
-    tree: &Tree,
-    rays: &Rays,
-    sink: &mut R,
-    instances: &mut I,
-    prepared: &mut Prepared,
-) {
-    let mut stack = walk::EMPTY_STACK;
-    for i in 0..rays.len() {
-        if i % AHEAD == 0 {
-            prepared.fill::<L>(rays, i);
-        }
-        if prepared.sound[i % AHEAD] != 0
-            && let Some(mut best) = sink.best(i)
-        {
-            let ray = prepared.ray(i);
-            walk::walk::<L, I, T, S, ANY>(tree, &ray, instances, &mut stack, &mut best);
-            sink.done(i, &best);
-        }
-    }
-}
-
-/// Walks the rays of a batch through the tree, together. With `ANY`, a ray is done at its first hit below its limit, of which `best`
-/// then tells the primitive.
+/// Walks rays of a batch through the tree, together. With `ANY`, a ray is done at its first hit below its limit, of which
+/// `best` then tells the primitive.
 #[inline(always)]
 pub(super) fn walk_all<
     L: Lanes,
@@ -286,6 +158,7 @@ pub(super) fn walk_all<
 >(
     tree: &Tree,
     rays: &Rays,
+    which: &[u32],
     sink: &mut R,
     instances: &mut I,
     scratch: &mut Scratch,
@@ -299,16 +172,14 @@ pub(super) fn walk_all<
     let mut next = 0;
     loop {
         for &slot in &free.slots[..free.len] {
-            while next < rays.len() {
-                let i = next;
+            while next < which.len() {
+                let (k, i) = (next, which[next] as usize);
                 next += 1;
-                if i % AHEAD == 0 {
-                    prepared.fill::<L>(rays, i);
+                if k.is_multiple_of(AHEAD) {
+                    prepared.fill::<L>(rays, &which[k..]);
                 }
-                if prepared.sound[i % AHEAD] != 0
-                    && let Some(best) = sink.best(i)
-                {
-                    flight.start(slot, i, prepared.ray(i), best);
+                if let Some(best) = sink.best(i) {
+                    flight.start(slot, i, prepared.ray(k), best);
                     break;
                 }
             }
@@ -372,7 +243,7 @@ impl<'a, L: Lanes> Flight<'a, L> {
         let nodes = self.nodes;
         for &slot in list {
             let s = &mut self.slots[slot as usize % SLOTS];
-            s.met = boxes(&nodes[s.child.index()], &s.ray, s.best.cull(), &mut s.near);
+            s.met = walk::boxes(&nodes[s.child.index()], &s.ray, s.best.cull(), &mut s.near);
         }
         let mut len = self.lists.len;
         for &slot in list {
@@ -384,7 +255,7 @@ impl<'a, L: Lanes> Flight<'a, L> {
             {
                 s.top += L::sort_falling(&s.near, s.met, &node.child, children, entries);
             }
-            s.child = pop(stack, &mut s.top, s.best.cull());
+            s.child = stack.pop(&mut s.top, s.best.cull());
             self.go(&mut len, slot);
         }
         self.lists.len = len;
@@ -394,17 +265,7 @@ impl<'a, L: Lanes> Flight<'a, L> {
     #[inline(always)]
     fn go(&mut self, len: &mut [usize; 3], slot: u8) {
         let child = self.slots[slot as usize % SLOTS].child;
-        let address: *const u8 = match child.kind() {
-            kind::INNER => self.nodes.as_ptr().wrapping_add(child.index()).cast(),
-            kind::TRIANGLES => self.blocks.as_ptr().wrapping_add(child.index()).cast(),
-            _ => self
-                .tree
-                .spheres
-                .as_ptr()
-                .wrapping_add(child.index())
-                .cast(),
-        };
-        L::prefetch(address, FETCHED);
+        L::prefetch(self.tree.address(child), FETCHED);
         self.lists.push(len, slot, child);
     }
 
@@ -427,7 +288,7 @@ impl<'a, L: Lanes> Flight<'a, L> {
             let stack = &self.stacks[slot as usize % SLOTS];
             s.child = match s.child.rest() {
                 Some(rest) => rest,
-                None => pop(stack, &mut s.top, s.best.cull()),
+                None => stack.pop(&mut s.top, s.best.cull()),
             };
             self.go(&mut len, slot);
         }
@@ -455,41 +316,10 @@ impl<'a, L: Lanes> Flight<'a, L> {
             if walk::leaf::<L, I, false, S, ANY>(self.tree, child, &s.ray, instances, &mut s.best) {
                 s.top = 1;
             }
-            s.child = pop(
-                &self.stacks[slot as usize % SLOTS],
-                &mut s.top,
-                s.best.cull(),
-            );
+            s.child = self.stacks[slot as usize % SLOTS].pop(&mut s.top, s.best.cull());
             self.go(&mut len, slot);
         }
         self.lists.len = len;
         free
     }
-}
-
-/// Takes the next child off the stack that may hold a closer hit.
-#[inline(always)]
-fn pop(stack: &Stack, top: &mut usize, cull: f32) -> Child {
-    let mut at = *top - 1;
-    while stack.entries[at] > cull {
-        at -= 1;
-    }
-    *top = at;
-    Child(stack.children[at])
-}
-
-/// Tests the eight boxes of a node: writes where the ray enters them, negative where it does not, and returns the bits of
-/// those that it enters.
-#[inline(always)]
-fn boxes<L: Lanes>(node: &LinearNode, ray: &WalkRay<L>, cull: f32, near: &mut [f32; WIDTH]) -> u32 {
-    let mut met = 0;
-    let mut at = 0;
-    while at < WIDTH {
-        let interval = ray.slabs(&node.planes, at);
-        let meets = interval.meets(L::splat(cull));
-        L::select(meets, interval.near, L::splat(-1.0)).store(&mut near[at..]);
-        met |= L::bits(meets) << at;
-        at += L::N;
-    }
-    met
 }

@@ -27,6 +27,13 @@ impl Candidates {
         det: [0.0; BLOCK],
     };
 
+    /// The barycentric weights of the second and third vertex of all of them.
+    #[inline(always)]
+    pub(super) fn all_weights<L: Lanes>(&self) -> [L; 2] {
+        let det = L::load(&self.det);
+        [L::load(&self.e1) / det, L::load(&self.e2) / det]
+    }
+
     /// The barycentric weights of a lane's second and third vertex.
     #[inline(always)]
     pub(crate) fn weights(&self, lane: usize) -> [f32; 2] {
@@ -86,7 +93,8 @@ fn inside<L: Lanes>(e: [L; 3]) -> L::Mask {
     zero.le(least) | greatest.le(zero)
 }
 
-/// Tests `L::N` triangles; returns the lanes that hit, in bits from 0 on. `out` is written from element `at` on.
+/// Tests `L::N` triangles against a ray, or a triangle against `L::N` rays; returns the lanes that hit, in bits from 0 on.
+/// `out` is written from element `at` on, unless nothing can hit; then the t of a lane that does not hit is infinite.
 ///
 /// A hit is in front of the origin if its box is, or else if f64 says so ([`in_front`]). Its t is clamped into the widened
 /// slab interval of the triangle's own box (a candidate whose interval is empty is none), raised to `floor`, and at most
@@ -96,7 +104,7 @@ pub(crate) fn test<L: Lanes, C: Corners<L>>(
     ray: &WalkRay<L>,
     corners: &C,
     at: usize,
-    [floor, limit]: [f32; 2],
+    [floor, limit]: [L; 2],
     out: &mut Candidates,
 ) -> u32 {
     let sheared = Sheared::new(ray, corners);
@@ -113,20 +121,22 @@ pub(crate) fn test<L: Lanes, C: Corners<L>>(
     ];
     let t = (e[0] * z[0] + e[1] * z[1] + e[2] * z[2]) / det;
     let own = own_box(ray, corners);
-    let clamped = t.min(own.far).max(own.near).max(L::splat(floor));
-    clamped.store(&mut out.t[at..]);
+    let clamped = t.min(own.far).max(own.near).max(floor);
+    let counts = inside & own.near.le(own.far) & clamped.le(limit);
+    L::select(counts, clamped, L::splat(f32::INFINITY)).store(&mut out.t[at..]);
     e[1].store(&mut out.e1[at..]);
     e[2].store(&mut out.e2[at..]);
     det.store(&mut out.det[at..]);
-    let counts = inside & own.near.le(own.far) & clamped.le(L::splat(limit));
     let mut hits = L::bits(counts & zero.lt(own.near));
     let mut doubtful = L::bits(counts & own.near.le(zero));
     while doubtful != 0 {
         let lane = doubtful.trailing_zeros() as usize & (BLOCK - 1);
         doubtful &= doubtful - 1;
-        if in_front(ray.origin_dir, corners.vertices(lane)) {
+        if in_front(ray.lane(lane), corners.vertices(lane)) {
             out.t[at + lane] = out.t[at + lane].max(f32::MIN_POSITIVE);
             hits |= 1 << lane;
+        } else {
+            out.t[at + lane] = f32::INFINITY;
         }
     }
     hits

@@ -1,20 +1,14 @@
 //! The walk of one ray through a tree, eight children at a time, nearest first.
 
-use super::ray::{WalkRay, splat};
+use super::instances::InstanceLeaves;
+use super::ray::WalkRay;
 use super::sphere::WideRay;
+use super::stack::{DONE, Stack};
 use super::triangle::{self, Candidates, FromLane};
-use crate::flat::bvh::{STACK, WIDTH, kind};
-use crate::flat::{
-    BLOCK, Bvh, Child, FlatScene, Instance, LinearNode, SphereBlock, Spheres, TriangleBlock,
-};
+use crate::flat::bvh::{WIDTH, kind};
+use crate::flat::{BLOCK, Bvh, Child, LinearNode, SphereBlock, Spheres, TriangleBlock};
 use crate::math::lanes::{Lanes, WideLanes};
 use crate::trace::Hits;
-
-/// Children put off, and where the ray enters them. Its length is proven by the builder's cap on depth.
-pub(super) type Stack = [(Child, f32); STACK];
-
-/// A stack with nothing on it.
-pub(super) const EMPTY_STACK: Stack = [(Child::inner(0), 0.0); STACK];
 
 /// The closest hit so far.
 #[derive(Clone, Copy)]
@@ -41,7 +35,7 @@ impl Best {
 
     /// Whether the candidate comes first by (t, instance, prim).
     #[inline(always)]
-    fn yields_to(&self, candidate: &Best) -> bool {
+    pub(super) fn yields_to(&self, candidate: &Best) -> bool {
         let tie = candidate.t == self.t
             && self.prim != Hits::NONE
             && (candidate.instance, candidate.prim) < (self.instance, self.prim);
@@ -53,6 +47,15 @@ impl Best {
     pub(super) fn cull(&self) -> f32 {
         Lanes::min(self.t, f32::MAX)
     }
+}
+
+/// Where rays come from and go to.
+pub(super) trait Sink {
+    /// What is known of a ray before the walk: its limit, or the closest hit that it has already. Nothing for a ray that
+    /// is not to be walked.
+    fn best(&self, index: usize) -> Option<Best>;
+    /// What became of a ray.
+    fn done(&mut self, index: usize, best: &Best);
 }
 
 /// A tree with the blocks that its leaves name.
@@ -67,75 +70,20 @@ pub(super) struct Tree<'a> {
     pub(super) floor: f32,
 }
 
-/// What instance leaves do: walk on, or not exist.
-pub(super) trait InstanceLeaves<L: Lanes> {
-    /// Tests a run of instances; true ends the walk.
-    fn test<const ANY: bool>(&mut self, run: &[u32], ray: &WalkRay<L>, best: &mut Best) -> bool;
-}
-
-/// A tree without instances.
-pub(super) struct NoInstances;
-
-impl<L: Lanes> InstanceLeaves<L> for NoInstances {
+impl Tree<'_> {
+    /// Where a child is, to be asked for; anywhere for instances and for what is not there.
     #[inline(always)]
-    fn test<const ANY: bool>(&mut self, _: &[u32], _: &WalkRay<L>, _: &mut Best) -> bool {
-        false
-    }
-}
-
-/// The scene's instances with a stack for their trees.
-pub(super) struct LocalTrees<'a> {
-    pub(super) scene: &'a FlatScene,
-    pub(super) stack: &'a mut Stack,
-}
-
-impl<L: Lanes> InstanceLeaves<L> for LocalTrees<'_> {
-    #[inline(always)]
-    fn test<const ANY: bool>(&mut self, run: &[u32], ray: &WalkRay<L>, best: &mut Best) -> bool {
-        for &index in run {
-            let instance = &self.scene.instances[index as usize];
-            let [min, max] = instance.bounds;
-            let own = ray.box_of(splat(min), splat(max));
-            if L::bits(own.meets(L::splat(best.cull()))) & 1 == 0 {
-                continue;
-            }
-            let Some(local) = local_ray::<L>(instance, ray.origin_dir) else {
-                continue;
-            };
-            let mut near = [0.0; BLOCK];
-            own.near.store(&mut near);
-            let geometry = &self.scene.local[instance.geometry as usize];
-            let tree = Tree {
-                bvh: &geometry.bvh,
-                triangles: &geometry.triangles.blocks,
-                spheres: &[],
-                instance: index,
-                floor: near[0],
-            };
-            let found =
-                walk::<L, _, true, false, ANY>(&tree, &local, &mut NoInstances, self.stack, best);
-            if ANY && found {
-                return true;
-            }
+    pub(super) fn address(&self, child: Child) -> *const u8 {
+        match child.kind() {
+            kind::INNER => self.bvh.nodes.as_ptr().wrapping_add(child.index()).cast(),
+            kind::TRIANGLES => self.triangles.as_ptr().wrapping_add(child.index()).cast(),
+            _ => self.spheres.as_ptr().wrapping_add(child.index()).cast(),
         }
-        false
     }
 }
 
-/// The ray in the instance's space; its direction keeps its length, so that t is shared.
-#[inline(always)]
-fn local_ray<L: Lanes>(instance: &Instance, [o, d]: [[f32; 3]; 2]) -> Option<WalkRay<L>> {
-    let m = &instance.to_local;
-    let [mut origin, mut dir] = [[0.0; 3]; 2];
-    for row in 0..3 {
-        let [x, y, z, w] = m[row];
-        origin[row] = x * o[0] + y * o[1] + z * o[2] + w;
-        dir[row] = x * d[0] + y * d[1] + z * d[2];
-    }
-    WalkRay::new(origin, dir)
-}
-
-/// Walks the tree: leaves the closest hit in `best`, or with `ANY` returns true at the first hit below `best.t`.
+/// Walks the tree from a child on: leaves the closest hit in `best`, or with `ANY` returns true at the first hit below
+/// `best.t`.
 ///
 /// `T`, `S`: the tree has triangles, spheres. A node is culled when the ray enters it strictly beyond the best hit, so that
 /// ties survive to be decided by id; and no hit lies outside its ancestors' intervals. Hence the result does not depend on
@@ -149,41 +97,32 @@ pub(super) fn walk<
     const ANY: bool,
 >(
     tree: &Tree,
+    start: Child,
     ray: &WalkRay<L>,
     instances: &mut I,
     stack: &mut Stack,
     best: &mut Best,
 ) -> bool {
     let bvh = tree.bvh;
-    let mut child = bvh.root;
+    let mut child = start;
     if child.kind() == kind::INNER && bvh.nodes.is_empty() {
         return false;
     }
-    let mut top = 0;
+    let mut top = 1;
     loop {
-        let found = if child.kind() == kind::INNER {
+        if child.kind() == kind::INNER {
             let node = &bvh.nodes[child.index()];
             if let Some(nearest) = enter(node, ray, best.cull(), stack, &mut top) {
                 child = nearest;
                 continue;
             }
-            false
-        } else {
-            leaf::<L, I, T, S, ANY>(tree, child, ray, instances, best)
-        };
-        if ANY && found {
+        } else if leaf::<L, I, T, S, ANY>(tree, child, ray, instances, best) && ANY {
             return true;
         }
-        loop {
-            if top == 0 {
-                return false;
-            }
-            top -= 1;
-            if stack[top].1 <= best.cull() {
-                break;
-            }
+        child = stack.pop(&mut top, best.cull());
+        if child == DONE {
+            return false;
         }
-        child = stack[top].0;
     }
 }
 
@@ -221,36 +160,36 @@ fn enter<L: Lanes>(
     top: &mut usize,
 ) -> Option<Child> {
     let mut near = [0.0; WIDTH];
+    let met = boxes(node, ray, cull, &mut near);
+    if met & met.wrapping_sub(1) == 0 {
+        return (met != 0).then_some(Child(node.child[lowest(met)]));
+    }
+    let children = stack.children[*top..].first_chunk_mut()?;
+    let entries = stack.entries[*top..].first_chunk_mut()?;
+    let len = L::sort_falling(&near, met, &node.child, children, entries);
+    *top += len - 1;
+    Some(Child(children[(len - 1) % WIDTH]))
+}
+
+/// Tests the eight boxes of a node: writes where the ray enters them, negative where it does not, and returns the bits of
+/// those that it enters.
+#[inline(always)]
+pub(super) fn boxes<L: Lanes>(
+    node: &LinearNode,
+    ray: &WalkRay<L>,
+    cull: f32,
+    near: &mut [f32; WIDTH],
+) -> u32 {
     let mut met = 0;
     let mut at = 0;
     while at < WIDTH {
         let interval = ray.slabs(&node.planes, at);
-        interval.near.store(&mut near[at..]);
-        met |= L::bits(interval.meets(L::splat(cull))) << at;
+        let meets = interval.meets(L::splat(cull));
+        L::select(meets, interval.near, L::splat(-1.0)).store(&mut near[at..]);
+        met |= L::bits(meets) << at;
         at += L::N;
     }
-    if met == 0 {
-        return None;
-    }
-    let mut nearest = lowest(met);
-    met &= met - 1;
-    let first = *top;
-    while met != 0 {
-        let mut far = lowest(met);
-        met &= met - 1;
-        if near[far] < near[nearest] {
-            (far, nearest) = (nearest, far);
-        }
-        let entry = (Child(node.child[far]), near[far]);
-        let mut place = *top;
-        while place > first && stack[place - 1].1 < entry.1 {
-            stack[place] = stack[place - 1];
-            place -= 1;
-        }
-        stack[place] = entry;
-        *top += 1;
-    }
-    Some(Child(node.child[nearest]))
+    met
 }
 
 /// Index of the lowest set bit of eight.
@@ -287,7 +226,8 @@ pub(super) fn triangle_block<L: Lanes, const ANY: bool>(
     let mut at = 0;
     while at < BLOCK {
         let corners = FromLane(block, at);
-        hit |= triangle::test(ray, &corners, at, [tree.floor, best.t], &mut c) << at;
+        let range = [L::splat(tree.floor), L::splat(best.t)];
+        hit |= triangle::test(ray, &corners, at, range, &mut c) << at;
         at += L::N;
     }
     while hit != 0 {
@@ -328,7 +268,7 @@ fn sphere_leaf<L: Lanes, const ANY: bool>(
                 L::Wide::load(&block.center[2][at..]),
             ];
             if L::bits(met) != 0
-                && let Some(root) = WideRay::splat::<L>(ray.origin_dir)
+                && let Some(root) = WideRay::new(ray.origin, ray.dir)
                     .root::<L>(center, L::Wide::load(&block.radius[at..]))
             {
                 let clamped = root.min(own.far).max(own.near);

@@ -42,7 +42,7 @@ impl<B: Balls> Primitives for Round<B> {
         any: bool,
         best: &mut Best,
     ) -> bool {
-        let wide = WideRay::splat::<B::Tested<L>>(ray.origin_dir);
+        let wide = WideRay::new(ray.origin, ray.dir);
         let mut t = [0.0; BLOCK];
         let mut at = 0;
         while at < leaf.slots {

@@ -75,8 +75,9 @@ impl<V: Vertices> Primitives for Triangles<V> {
                 slot,
                 place: self.0.place::<V::Tested<L>>(slot),
             };
-            let mut hit = triangle::test(ray, &corners, 0, [0.0, best.t], &mut found)
-                & first(leaf.slots - at);
+            let range = [Lanes::splat(0.0), Lanes::splat(best.t)];
+            let mut hit =
+                triangle::test(ray, &corners, 0, range, &mut found) & first(leaf.slots - at);
             while hit != 0 {
                 let lane = hit.trailing_zeros() as usize & (BLOCK - 1);
                 hit &= hit - 1;
