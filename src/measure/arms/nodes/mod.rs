@@ -3,6 +3,7 @@
 //! All have the leaves of the product's tree, so that formats differ in what lies above the leaves alone.
 
 mod binary;
+mod eight;
 mod wide;
 
 pub(super) use binary::Binary;

@@ -6,6 +6,7 @@ use crate::flat::bvh::WIDTH;
 use crate::flat::{self, Bvh};
 use crate::math::lanes::Lanes;
 use crate::trace::kernels::ray::WalkRay;
+use super::eight::{boxes_met, put_off};
 
 /// A node.
 #[repr(C, align(64))]
@@ -43,51 +44,11 @@ impl Node for Wide {
 
     #[inline(always)]
     fn enter<L: Lanes>(&self, ray: &WalkRay<L>, cull: f32, stack: &mut Stack) -> Option<Child> {
-        let mut near = [0.0; WIDTH];
-        let mut met = 0;
-        let mut at = 0;
-        while at < WIDTH {
-            let interval = ray.slabs(&self.planes, at);
-            interval.near.store(&mut near[at..]);
-            met |= L::bits(interval.meets(L::splat(cull))) << at;
-            at += L::N;
-        }
-        if met == 0 {
-            return None;
-        }
-        let mut nearest = lowest(met);
-        met &= met - 1;
-        let bottom = stack.top;
-        while met != 0 {
-            let mut far = lowest(met);
-            met &= met - 1;
-            if near[far] < near[nearest] {
-                (far, nearest) = (nearest, far);
-            }
-            let mut place = stack.top;
-            while place > bottom && stack.entries[place - 1].1 < near[far] {
-                stack.entries[place] = stack.entries[place - 1];
-                place -= 1;
-            }
-            stack.entries[place] = (self.child(far), near[far]);
-            stack.top += 1;
-        }
-        Some(self.child(nearest))
-    }
-}
-
-impl Wide {
-    #[inline(always)]
-    fn child(&self, slot: usize) -> Child {
-        Child {
+        let (near, met) = boxes_met(&self.planes, ray, cull);
+        let child = |slot: usize| Child {
             first: self.first[slot],
             slots: self.slots[slot],
-        }
+        };
+        put_off(&near, met, child, &mut stack.entries, &mut stack.top)
     }
-}
-
-/// Index of the lowest set bit of eight.
-#[inline(always)]
-fn lowest(bits: u32) -> usize {
-    bits.trailing_zeros() as usize & (WIDTH - 1)
 }
