@@ -13,7 +13,7 @@ pub struct Isa(Level);
 pub enum Level {
     /// One lane.
     Scalar,
-    /// Eight portable lanes at the target's baseline (SSE2 on x86-64).
+    /// Eight lanes at the target's baseline: SSE2 on x86-64, elsewhere what the compiler makes of arrays.
     Sse2,
     /// Eight lanes of AVX2.
     Avx2,

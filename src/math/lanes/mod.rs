@@ -1,8 +1,8 @@
 //! Lanes: vectors of f32 with companion vectors of f64 of the same count. The one home of intrinsics.
 //!
-//! Kernels are written once, generic over [`Lanes`]. Backends: [`f32`] itself (one lane), [`portable`] arrays of eight,
-//! [`avx2`] (eight) and [`avx512`] (sixteen). All of them round alike, lane by lane, so that a kernel's bits do not depend on
-//! the backend: nothing here is fused, approximate or reordered.
+//! Kernels are written once, generic over [`Lanes`]. Backends: [`f32`] itself (one lane), [`sse2`] (four or eight),
+//! [`avx2`] (eight) and [`avx512`] (sixteen); [`portable`] arrays in place of `sse2` elsewhere. All of them round alike, lane
+//! by lane, so that a kernel's bits do not depend on the backend: nothing here is fused, approximate or reordered.
 //!
 //! Every function is `#[inline(always)]` and none has `#[target_feature]`, which stands on the top function of a batch only:
 //! an intrinsic is inlined once its caller has arrived there. Hence the rule that makes the intrinsics sound: **a value of
@@ -16,10 +16,19 @@
 pub(crate) mod avx2;
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod avx512;
+#[cfg(any(test, not(target_arch = "x86_64")))]
 pub(crate) mod portable;
 mod scalar;
+#[cfg(target_arch = "x86_64")]
+pub(crate) mod sse2;
 #[cfg(test)]
 mod tests;
+
+/// What every machine of the target has.
+#[cfg(not(target_arch = "x86_64"))]
+pub(crate) use portable as baseline;
+#[cfg(target_arch = "x86_64")]
+pub(crate) use sse2 as baseline;
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 

@@ -5,7 +5,7 @@
     reason = "each backend runs in an entry of its instruction set"
 )]
 
-use super::{Lanes, WideLanes, portable};
+use super::{Lanes, WideLanes, baseline, portable};
 
 /// Signs, zeros, denormals, halfway cases of rounding, infinities and NaN.
 const VALUES: [f32; 16] = [
@@ -118,6 +118,11 @@ fn every_backend_gives_the_bits_of_one_lane() {
             expected,
             "portable, turn {turn}"
         );
+        assert_eq!(
+            operations::<baseline::F32x8>(&a, &b),
+            expected,
+            "eight, turn {turn}"
+        );
         #[cfg(target_arch = "x86_64")]
         if Isa::available(Level::Avx2).is_some() {
             // SAFETY: just asked.
@@ -185,7 +190,7 @@ fn children_are_sorted_by_falling_keys() {
         keys.rotate_left(1);
         keys.swap(0, turn);
         sorts::<f32>(&keys);
-        sorts::<portable::F32x8>(&keys);
+        sorts::<baseline::F32x8>(&keys);
         #[cfg(target_arch = "x86_64")]
         if Isa::available(Level::Avx2).is_some() {
             // SAFETY: just asked.

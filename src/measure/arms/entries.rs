@@ -8,7 +8,7 @@ use super::layouts::Primitives;
 use super::nodes::{Node, Tree};
 use super::walk::{self, Answers};
 use super::work::Work;
-use crate::math::lanes::portable;
+use crate::math::lanes::baseline;
 use crate::trace::isa::Level;
 use crate::trace::{Isa, Rays};
 
@@ -33,7 +33,7 @@ macro_rules! entry {
 }
 
 entry!(scalar, f32);
-entry!(sse2, portable::F32x8);
+entry!(sse2, baseline::F32x8);
 #[cfg(target_arch = "x86_64")]
 entry!(avx2, crate::math::lanes::avx2::F32x8, "avx2");
 

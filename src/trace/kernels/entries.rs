@@ -12,7 +12,7 @@ use super::ray::WalkRay;
 use super::stack::Stack;
 use super::walk::{self, Best, Tree};
 use crate::flat::{Child, FlatScene, Spheres};
-use crate::math::lanes::{Lanes, portable};
+use crate::math::lanes::{Lanes, baseline};
 #[cfg(target_arch = "x86_64")]
 use crate::math::lanes::{avx2 as avx2_lanes, avx512 as avx512_lanes};
 use crate::trace::isa::Level;
@@ -156,8 +156,8 @@ pub(super) mod scalar {
 
 pub(super) mod sse2 {
     use super::*;
-    looped!(portable::F32x8);
-    tree!(portable::F32x8);
+    looped!(baseline::F32x8);
+    tree!(baseline::F32x8);
 }
 
 #[cfg(target_arch = "x86_64")]

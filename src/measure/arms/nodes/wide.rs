@@ -1,12 +1,12 @@
 //! Eight children a node, their planes in lanes: 256 bytes. What Embree's BVH8 is (Wald et al., *Embree: A Kernel Framework
 //! for Efficient CPU Ray Tracing*, 2014), and what the product walks.
 
+use super::eight::{boxes_met, put_off};
 use super::{Child, Node, Stack, Tree, child, root};
 use crate::flat::bvh::WIDTH;
 use crate::flat::{self, Bvh};
 use crate::math::lanes::Lanes;
 use crate::trace::kernels::ray::WalkRay;
-use super::eight::{boxes_met, put_off};
 
 /// A node.
 #[repr(C, align(64))]
