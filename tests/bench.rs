@@ -142,8 +142,13 @@ fn all_arms(name: &str, subject: Subject) -> Vec<Record> {
 
 #[test]
 fn all_arms_agree() {
-    let rows = |layout: Layout| {
-        let trees = if layout == Layout::Luxel { 3 } else { 4 };
+    let rows = |layout: Layout, spheres: bool| {
+        let trees = match (layout, spheres) {
+            (Layout::Gathered | Layout::Fours, true) => 0,
+            (Layout::Gathered | Layout::Fours | Layout::Luxel, _) => 3,
+            (Layout::Blocks, false) => 5,
+            _ => 4,
+        };
         let isas = Isa::all().filter(|isa| layout.runs_on(isa.level())).count();
         trees * isas * RayKind::ALL.len()
     };
@@ -155,9 +160,8 @@ fn all_arms_agree() {
     ] {
         let spheres = subject.triangles.is_empty();
         let records = all_arms(name, subject);
-        let layouts = Layout::ALL.into_iter();
-        let expected = layouts.filter(|&layout| !(spheres && layout == Layout::Gathered));
-        assert_eq!(records.len(), expected.map(rows).sum::<usize>(), "{name}");
+        let expected = Layout::ALL.into_iter().map(|layout| rows(layout, spheres));
+        assert_eq!(records.len(), expected.sum::<usize>(), "{name}");
         for kind in RayKind::ALL {
             let same: Vec<&Record> = records.iter().filter(|r| r.rays == kind).collect();
             assert!(same.iter().all(|r| r.checksum == same[0].checksum));
@@ -181,6 +185,8 @@ fn work_is_that_of_the_tree() {
     let (wide, _) = work(Tree::Bvh8, Layout::Blocks);
     let (binary, _) = work(Tree::Bvh2, Layout::Blocks);
     let (structs, _) = work(Tree::Bvh8, Layout::Structs);
+    let (fours, _) = work(Tree::Bvh8, Layout::Fours);
+    let (bytes, _) = work(Tree::Bvh8q, Layout::Blocks);
     assert_eq!(
         (structs.nodes, structs.primitives),
         (wide.nodes, wide.primitives)
@@ -188,6 +194,32 @@ fn work_is_that_of_the_tree() {
     assert_eq!(structs.lanes, structs.primitives);
     assert!(wide.lanes > wide.primitives && wide.primitives < brute.primitives / 10);
     assert!(binary.nodes > 3 * wide.nodes / 2, "{binary:?} {wide:?}");
+    assert_eq!(fours.primitives, wide.primitives);
+    assert!(fours.lanes > fours.primitives && fours.lanes < wide.lanes);
+    // Looser boxes are met more often, but not much.
+    assert!(
+        (wide.nodes..wide.nodes * 11 / 10).contains(&bytes.nodes),
+        "{bytes:?} {wide:?}"
+    );
+    assert!(bytes.primitives >= wide.primitives);
+}
+
+#[test]
+fn memory_is_that_of_the_format() {
+    let soup = meshes::soup(5000);
+    let nodes = scene(&soup).world.bvh.nodes.len();
+    let records = all_arms("soup", soup);
+    let bytes = |tree: Tree, layout: Layout| {
+        let row = |r: &&Record| (r.tree, r.layout) == (tree, layout);
+        5000.0 * records.iter().find(row).expect("a row").bytes
+    };
+    let wide = bytes(Tree::Bvh8, Layout::Blocks);
+    let saved = wide - bytes(Tree::Bvh8q, Layout::Blocks);
+    assert!(
+        (saved - 128.0 * nodes as f64).abs() < 1.0,
+        "{saved}, {nodes} nodes"
+    );
+    assert!(bytes(Tree::Bvh8, Layout::Fours) < wide);
 }
 
 /// Runs `luxel bench` in a folder that is gone afterwards, with a mesh of two triangles in it.
@@ -221,7 +253,7 @@ fn a_run_prints_and_writes() {
         "--rays",
         "random,shadow",
         "--accel",
-        "bvh2,bvh8",
+        "bvh2,bvh8,bvh8q",
         "--layout",
         "structs,blocks,luxel",
         "--isa",
@@ -237,6 +269,7 @@ fn a_run_prints_and_writes() {
     for words in [
         "lane blocks over array of structs, scalar",
         "eight children over two",
+        "boxes in floats over bytes",
         "luxel over the fastest rival",
         "spheres-100: 100 primitives",
         "two: 14 primitives",
@@ -256,9 +289,9 @@ fn a_run_prints_and_writes() {
              primitives_per_ray,lanes_per_ray,bytes_per_primitive,build_ms,checksum"
         )
     );
-    // Two trees of two layouts and luxel's, twice two ray sets.
+    // Two trees of two layouts and luxel's; bytes for boxes where there are triangles; two ray sets.
     let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
-    assert_eq!(rows.len(), 5 * 2 * 2);
+    assert_eq!(rows.len(), (5 + 6) * 2);
     for row in rows {
         assert_eq!(row.len(), 16, "{row:?}");
         let number = |i: usize| {
@@ -273,7 +306,7 @@ fn a_run_prints_and_writes() {
         assert_eq!(row[10].is_empty(), row[4] == "luxel", "{row:?}");
     }
     assert!(svg.starts_with("<svg ") && svg.ends_with("</svg>\n"));
-    assert_eq!(svg.matches("class=\"n\"").count(), 20);
+    assert_eq!(svg.matches("class=\"n\"").count(), 22);
 }
 
 #[test]

@@ -27,7 +27,7 @@ pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
     if records.is_empty() {
         return Err(Failure::usage(
             "none of these layouts runs with these trees and instruction sets",
-            "bvh2 is for rivals, avx512 for luxel, gathered for triangles with sse2 or avx2, box and brute for small scenes",
+            "bvh2 is for rivals, bvh8q for blocks of triangles, avx512 for luxel, gathered and fours for triangles on bvh8 with sse2 or avx2, box and brute for small scenes",
         ));
     }
     let write = |path: &Path, text: String| {

@@ -18,11 +18,14 @@ Examples:
   luxel bench --mesh dragon.obj --csv dragon.csv   your mesh, for a spreadsheet
   luxel bench --size 1m --rays random --isa scalar,sse2,avx2
   luxel bench --size spheres-100 --accel bvh8,brute --layout blocks,luxel
+  luxel bench --accel bvh8,bvh8q --layout fours,blocks --isa avx2
   luxel bench --all --svg all.svg                  everything; half an hour and more, 4 GB
 
 Layouts of primitives: structs (an array of them, one tested at a time), gathered (the same, eight gathered into lanes),
-arrays (one for every coordinate), blocks (of eight lanes), luxel (what `render` runs). Trees, leaves and rays are the
-same for all of them, and so must their hits be, to the bit; that is checked before anything is timed.
+arrays (one for every coordinate), fours (blocks of four lanes), blocks (of eight), luxel (what `render` runs). Trees: bvh2
+(two children a node), bvh8 (eight), bvh8q (eight, their boxes in bytes: half the memory), box (one around the object),
+brute (none). Leaves and rays are the same for all of them, and so must their hits be, to the bit; that is checked before
+anything is timed. What no comparison needs is left out: gathered and fours go with bvh8, bvh8q with blocks of triangles.
 Times are CPU times of one thread, the least of several passes that the arms take in turns.")]
 pub(crate) struct BenchArgs {
     /// What to trace, separated by commas: balls in a room of 3k to 4m triangles, an open terrain of 4 M, a soup of

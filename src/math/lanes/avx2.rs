@@ -91,6 +91,15 @@ impl Lanes for F32x8 {
         unsafe { F32x8(_mm256_loadu_ps(from.as_ptr())) }
     }
     #[inline(always)]
+    fn load_bytes(from: &[u8]) -> F32x8 {
+        let from = &from[..8];
+        // SAFETY: the machine has AVX2, see the module; eight elements are there.
+        unsafe {
+            let bytes = _mm_loadl_epi64(from.as_ptr().cast());
+            F32x8(_mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(bytes)))
+        }
+    }
+    #[inline(always)]
     fn store(self, to: &mut [f32]) {
         let to = &mut to[..8];
         // SAFETY: the machine has AVX, see the module; eight elements are there.

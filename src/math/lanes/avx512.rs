@@ -105,6 +105,15 @@ impl Lanes for F32x16 {
         unsafe { F32x16(_mm512_loadu_ps(from.as_ptr())) }
     }
     #[inline(always)]
+    fn load_bytes(from: &[u8]) -> F32x16 {
+        let from = &from[..16];
+        // SAFETY: the machine has AVX-512, see the module; sixteen elements are there.
+        unsafe {
+            let bytes = _mm_loadu_si128(from.as_ptr().cast());
+            F32x16(_mm512_cvtepi32_ps(_mm512_cvtepu8_epi32(bytes)))
+        }
+    }
+    #[inline(always)]
     fn store(self, to: &mut [f32]) {
         let to = &mut to[..16];
         // SAFETY: the machine has AVX-512, see the module; sixteen elements are there.

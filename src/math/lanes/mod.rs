@@ -9,8 +9,8 @@
 //! [`avx2`] or [`avx512`] exists only inside an entry that a [`crate::trace::Isa`] of that level guards**, which is the proof
 //! that the machine has the instructions. The module is private to the crate for that reason.
 //!
-//! Deliberately absent: integers, shuffles (but for the one order that traversal needs), sums over lanes, fused and
-//! approximate operations.
+//! Deliberately absent: integers (but for bytes that become numbers), shuffles (but for the one order that traversal
+//! needs), sums over lanes, fused and approximate operations.
 
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod avx2;
@@ -52,6 +52,8 @@ pub(crate) trait Lanes:
     fn splat(x: f32) -> Self;
     /// The first `N` elements.
     fn load(from: &[f32]) -> Self;
+    /// The first `N` bytes as numbers.
+    fn load_bytes(from: &[u8]) -> Self;
     /// Overwrites the first `N` elements.
     fn store(self, to: &mut [f32]);
     /// `self < other`; false with NaN, like every comparison here.

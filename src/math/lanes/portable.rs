@@ -20,6 +20,9 @@ pub(crate) struct Doubles<const N: usize>([f64; N]);
 #[repr(C, align(16))]
 pub(crate) struct Truths<const N: usize>([u32; N]);
 
+/// Four f32.
+pub(crate) type F32x4 = Floats<4>;
+
 /// Eight f32.
 pub(crate) type F32x8 = Floats<8>;
 
@@ -76,6 +79,11 @@ impl<const N: usize> Lanes for Floats<N> {
     fn load(from: &[f32]) -> Floats<N> {
         let from = &from[..N];
         Floats(from_fn(|i| from[i]))
+    }
+    #[inline(always)]
+    fn load_bytes(from: &[u8]) -> Floats<N> {
+        let from = &from[..N];
+        Floats(from_fn(|i| f32::from(from[i])))
     }
     #[inline(always)]
     fn store(self, to: &mut [f32]) {

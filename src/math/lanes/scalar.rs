@@ -16,6 +16,10 @@ impl Lanes for f32 {
         from[0]
     }
     #[inline(always)]
+    fn load_bytes(from: &[u8]) -> f32 {
+        f32::from(from[0])
+    }
+    #[inline(always)]
     fn store(self, to: &mut [f32]) {
         to[0] = self;
     }

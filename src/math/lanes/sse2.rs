@@ -25,6 +25,9 @@ pub(crate) struct Doubles<const R: usize>([[__m128d; 2]; R]);
 #[repr(transparent)]
 pub(crate) struct Truths<const R: usize>([__m128; R]);
 
+/// Four f32.
+pub(crate) type F32x4 = Floats<1>;
+
 /// Eight f32.
 pub(crate) type F32x8 = Floats<2>;
 
@@ -100,6 +103,21 @@ impl<const R: usize> Lanes for Floats<R> {
         // SAFETY: the machine has SSE2, see the module; four elements are there for every register.
         Floats(from_fn(|r| unsafe {
             _mm_loadu_ps(from.as_ptr().add(4 * r))
+        }))
+    }
+    #[inline(always)]
+    fn load_bytes(from: &[u8]) -> Floats<R> {
+        let from = &from[..4 * R];
+        let word = |r: usize| {
+            from[4 * r..]
+                .first_chunk::<4>()
+                .map_or(0, |&b| i32::from_le_bytes(b))
+        };
+        // SAFETY: the machine has SSE2, see the module.
+        Floats(from_fn(|r| unsafe {
+            let zero = _mm_setzero_si128();
+            let pairs = _mm_unpacklo_epi8(_mm_cvtsi32_si128(word(r)), zero);
+            _mm_cvtepi32_ps(_mm_unpacklo_epi16(pairs, zero))
         }))
     }
     #[inline(always)]

@@ -38,8 +38,8 @@ fn computed(x: f32) -> u32 {
 
 /// Bits of all operations on lanes that hold `a[i]` and `b[i]`, lane by lane.
 #[inline(always)]
-fn operations<L: Lanes>(a: &[f32; 16], b: &[f32; 16]) -> Vec<[u32; 22]> {
-    let mut out = vec![[0; 22]; 16];
+fn operations<L: Lanes>(a: &[f32; 16], b: &[f32; 16]) -> Vec<[u32; 23]> {
+    let mut out = vec![[0; 23]; 16];
     let mut at = 0;
     while at < 16 {
         let [x, y] = [L::load(&a[at..]), L::load(&b[at..])];
@@ -84,6 +84,12 @@ fn operations<L: Lanes>(a: &[f32; 16], b: &[f32; 16]) -> Vec<[u32; 22]> {
         }
         let bits = L::bits(x.lt(y));
         (0..L::N).for_each(|i| out[at + i][21] = bits >> i & 1);
+        let bytes = a.map(|x| (x.to_bits() >> 18) as u8);
+        L::load_bytes(&bytes[at..]).store(&mut lanes);
+        for i in 0..L::N {
+            assert_eq!(lanes[i], f32::from(bytes[at + i]));
+            out[at + i][22] = lanes[i].to_bits();
+        }
         assert_eq!(
             w.any_not_negative(),
             a[at..at + L::N].iter().any(|x| *x >= 0.0)
@@ -95,13 +101,13 @@ fn operations<L: Lanes>(a: &[f32; 16], b: &[f32; 16]) -> Vec<[u32; 22]> {
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn on_avx2(a: &[f32; 16], b: &[f32; 16]) -> Vec<[u32; 22]> {
+fn on_avx2(a: &[f32; 16], b: &[f32; 16]) -> Vec<[u32; 23]> {
     operations::<super::avx2::F32x8>(a, b)
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,avx512f,avx512vl,avx512dq,avx512bw")]
-fn on_avx512(a: &[f32; 16], b: &[f32; 16]) -> Vec<[u32; 22]> {
+fn on_avx512(a: &[f32; 16], b: &[f32; 16]) -> Vec<[u32; 23]> {
     operations::<super::avx512::F32x16>(a, b)
 }
 
@@ -117,6 +123,11 @@ fn every_backend_gives_the_bits_of_one_lane() {
             operations::<portable::F32x8>(&a, &b),
             expected,
             "portable, turn {turn}"
+        );
+        assert_eq!(
+            operations::<baseline::F32x4>(&a, &b),
+            expected,
+            "four, turn {turn}"
         );
         assert_eq!(
             operations::<baseline::F32x8>(&a, &b),

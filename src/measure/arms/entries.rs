@@ -46,7 +46,7 @@ pub(super) fn batch<N: Node, P: Primitives>(
     answers: Answers,
 ) {
     match isa.level() {
-        Level::Scalar => scalar::batch(tree, primitives, rays, answers),
+        Level::Scalar if P::SCALAR => scalar::batch(tree, primitives, rays, answers),
         // SAFETY: the value is the proof that this machine has the instructions: AVX2 is part of both levels.
         #[cfg(target_arch = "x86_64")]
         Level::Avx2 | Level::Avx512 => unsafe { avx2::batch(tree, primitives, rays, answers) },

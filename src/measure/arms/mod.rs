@@ -18,7 +18,7 @@ use crate::build::Accel;
 use crate::flat::FlatScene;
 use crate::trace::isa::Level;
 use crate::trace::{Hits, Isa, Rays};
-use nodes::{Binary, Wide};
+use nodes::{Binary, Quantised, Wide};
 use std::fmt;
 use std::sync::Arc;
 
@@ -33,14 +33,15 @@ pub trait Arm {
 }
 
 /// The arm of a scene that was built with [`Tree::accel`] and holds triangles or spheres, not both; none where there is
-/// none: the product has no binary tree, and spheres are not gathered.
+/// none: the product walks one format of nodes, and of the rivals there are those that somebody compares.
 #[must_use]
 pub fn make(tree: Tree, layout: Layout, scene: &Arc<FlatScene>) -> Option<Box<dyn Arm>> {
     match (tree, layout) {
-        (Tree::Bvh2, Layout::Luxel) => None,
+        (Tree::Bvh2 | Tree::Bvh8q, Layout::Luxel) => None,
         (_, Layout::Luxel) => Some(Box::new(Luxel(Arc::clone(scene)))),
         (Tree::Bvh2, _) => rival::make::<Binary>(layout, scene),
-        _ => rival::make::<Wide>(layout, scene),
+        (Tree::Bvh8q, _) => rival::make_quantised(layout, scene),
+        _ => rival::make::<Wide>(layout, scene).or_else(|| rival::make_wide(layout, scene)),
     }
 }
 
@@ -53,6 +54,7 @@ impl Counter {
     pub fn new(tree: Tree, scene: &Arc<FlatScene>) -> Counter {
         Counter(match tree {
             Tree::Bvh2 => rival::counter::<Binary>(scene),
+            Tree::Bvh8q => rival::counter::<Quantised>(scene),
             _ => rival::counter::<Wide>(scene),
         })
     }
@@ -71,6 +73,8 @@ pub enum Tree {
     Bvh2,
     /// Eight children a node.
     Bvh8,
+    /// The same with the children's boxes in bytes.
+    Bvh8q,
     /// A box around the object, all of it inside, and one around its room.
     Box,
     /// No tree at all.
@@ -79,13 +83,13 @@ pub enum Tree {
 
 impl Tree {
     /// All, the widest known first.
-    pub const ALL: [Tree; 4] = [Tree::Bvh2, Tree::Bvh8, Tree::Box, Tree::Brute];
+    pub const ALL: [Tree; 5] = [Tree::Bvh2, Tree::Bvh8, Tree::Bvh8q, Tree::Box, Tree::Brute];
 
     /// What the product's builder is asked for.
     #[must_use]
     pub fn accel(self) -> Accel {
         match self {
-            Tree::Bvh2 | Tree::Bvh8 => Accel::Bvh,
+            Tree::Bvh2 | Tree::Bvh8 | Tree::Bvh8q => Accel::Bvh,
             Tree::Box => Accel::Box,
             Tree::Brute => Accel::Brute,
         }
@@ -103,6 +107,7 @@ impl Tree {
         match self {
             Tree::Bvh2 => "bvh2",
             Tree::Bvh8 => "bvh8",
+            Tree::Bvh8q => "bvh8q",
             Tree::Box => "box",
             Tree::Brute => "brute",
         }
@@ -118,7 +123,9 @@ pub enum Layout {
     Gathered,
     /// An array for every coordinate.
     Arrays,
-    /// Blocks of eight lanes for every coordinate.
+    /// Blocks of four lanes for every coordinate.
+    Fours,
+    /// Blocks of eight.
     Blocks,
     /// The product's kernels and buffers.
     Luxel,
@@ -126,10 +133,11 @@ pub enum Layout {
 
 impl Layout {
     /// All, the plainest first.
-    pub const ALL: [Layout; 5] = [
+    pub const ALL: [Layout; 6] = [
         Layout::Structs,
         Layout::Gathered,
         Layout::Arrays,
+        Layout::Fours,
         Layout::Blocks,
         Layout::Luxel,
     ];
@@ -139,8 +147,8 @@ impl Layout {
     pub fn runs_on(self, level: Level) -> bool {
         match self {
             Layout::Luxel => true,
-            // One lane at a time is what `Structs` does.
-            Layout::Gathered => matches!(level, Level::Sse2 | Level::Avx2),
+            // One lane at a time is what `Structs` and `Blocks` do.
+            Layout::Gathered | Layout::Fours => matches!(level, Level::Sse2 | Level::Avx2),
             _ => level != Level::Avx512,
         }
     }
@@ -152,6 +160,7 @@ impl Layout {
             Layout::Structs => "array of structs",
             Layout::Gathered => "gathered structs",
             Layout::Arrays => "nine arrays",
+            Layout::Fours => "blocks of four",
             Layout::Blocks => "lane blocks",
             Layout::Luxel => "luxel",
         }
@@ -164,6 +173,7 @@ impl Layout {
             Layout::Structs => "structs",
             Layout::Gathered => "gathered",
             Layout::Arrays => "arrays",
+            Layout::Fours => "fours",
             Layout::Blocks => "blocks",
             Layout::Luxel => "luxel",
         }

@@ -4,8 +4,8 @@ use super::layouts::sphere_layouts as balls;
 use super::layouts::spheres::Round;
 use super::layouts::triangle_layouts as triangles;
 use super::layouts::triangles::Triangles;
-use super::layouts::{Gapless, Primitives, padded};
-use super::nodes::{Node, Tree};
+use super::layouts::{Primitives, Slots};
+use super::nodes::{Node, Quantised, Tree, Wide};
 use super::walk::Answers;
 use super::work::Work;
 use super::{Arm, Layout, entries};
@@ -20,49 +20,57 @@ struct Rival<N, P> {
 }
 
 impl<N: Node, P: Primitives> Rival<N, P> {
-    fn gapless(scene: &FlatScene, primitives: P) -> Box<dyn Arm>
-    where
-        Self: 'static,
-    {
-        let names = Gapless::of(scene);
-        let tree = N::tree(&scene.world.bvh, |block, blocks| names.leaf(block, blocks));
+    fn new(scene: &FlatScene, primitives: P) -> Box<Rival<N, P>> {
+        let slots = Slots::of(scene, P::UNIT);
+        let tree = N::tree(&scene.world.bvh, |block, blocks| slots.leaf(block, blocks));
         Box::new(Rival { tree, primitives })
-    }
-
-    fn padded(scene: &FlatScene, primitives: P) -> Rival<N, P> {
-        let tree = N::tree(&scene.world.bvh, padded);
-        Rival { tree, primitives }
     }
 }
 
-/// The rival with this format of nodes; none where it would be the same as another.
+/// The layouts that every tree has.
 pub(super) fn make<N: Node + 'static>(
     layout: Layout,
     scene: &Arc<FlatScene>,
 ) -> Option<Box<dyn Arm>> {
-    let spheres = scene.world.triangles.blocks.is_empty();
     let own = || Arc::clone(scene);
-    Some(match (layout, spheres) {
+    Some(match (layout, spheres(scene)) {
         (Layout::Structs, false) => {
-            Rival::<N, _>::gapless(scene, Triangles(triangles::Structs::new(scene)))
-        }
-        (Layout::Gathered, false) => {
-            Rival::<N, _>::gapless(scene, Triangles(triangles::Gathered::new(scene)))
+            Rival::<N, _>::new(scene, Triangles(triangles::Structs::new(scene)))
         }
         (Layout::Arrays, false) => {
-            Rival::<N, _>::gapless(scene, Triangles(triangles::Arrays::new(scene)))
+            Rival::<N, _>::new(scene, Triangles(triangles::Arrays::new(scene)))
         }
-        (Layout::Blocks, false) => Box::new(Rival::<N, _>::padded(
-            scene,
-            Triangles(triangles::Blocks(own())),
-        )),
-        (Layout::Structs, true) => Rival::<N, _>::gapless(scene, Round(balls::Structs::new(scene))),
-        (Layout::Arrays, true) => Rival::<N, _>::gapless(scene, Round(balls::Arrays::new(scene))),
-        (Layout::Blocks, true) => {
-            Box::new(Rival::<N, _>::padded(scene, Round(balls::Blocks(own()))))
-        }
-        (Layout::Gathered, true) | (Layout::Luxel, _) => return None,
+        (Layout::Blocks, false) => Rival::<N, _>::new(scene, Triangles(triangles::Blocks(own()))),
+        (Layout::Structs, true) => Rival::<N, _>::new(scene, Round(balls::Structs::new(scene))),
+        (Layout::Arrays, true) => Rival::<N, _>::new(scene, Round(balls::Arrays::new(scene))),
+        (Layout::Blocks, true) => Rival::<N, _>::new(scene, Round(balls::Blocks(own()))),
+        _ => return None,
     })
+}
+
+/// The layouts of triangles that only wide nodes have: each takes seconds to compile, and says nothing new on others.
+pub(super) fn make_wide(layout: Layout, scene: &FlatScene) -> Option<Box<dyn Arm>> {
+    Some(match (layout, spheres(scene)) {
+        (Layout::Gathered, false) => {
+            Rival::<Wide, _>::new(scene, Triangles(triangles::Gathered::new(scene)))
+        }
+        (Layout::Fours, false) => {
+            Rival::<Wide, _>::new(scene, Triangles(triangles::Fours::new(scene)))
+        }
+        _ => return None,
+    })
+}
+
+/// Quantised nodes, which only the product's layout has, likewise.
+pub(super) fn make_quantised(layout: Layout, scene: &Arc<FlatScene>) -> Option<Box<dyn Arm>> {
+    let blocks = || Triangles(triangles::Blocks(Arc::clone(scene)));
+    let there = layout == Layout::Blocks && !spheres(scene);
+    there.then(|| Rival::<Quantised, _>::new(scene, blocks()) as Box<dyn Arm>)
+}
+
+/// Whether a scene has spheres in place of triangles.
+fn spheres(scene: &FlatScene) -> bool {
+    scene.world.triangles.blocks.is_empty()
 }
 
 impl<N: Node, P: Primitives> Arm for Rival<N, P> {
@@ -110,12 +118,9 @@ pub(super) trait Count {
 /// The counting walk of this format of nodes.
 pub(super) fn counter<N: Node + 'static>(scene: &Arc<FlatScene>) -> Box<dyn Count> {
     let own = || Arc::clone(scene);
-    match scene.world.triangles.blocks.is_empty() {
-        false => Box::new(Rival::<N, _>::padded(
-            scene,
-            Triangles(triangles::Blocks(own())),
-        )),
-        true => Box::new(Rival::<N, _>::padded(scene, Round(balls::Blocks(own())))),
+    match spheres(scene) {
+        false => Rival::<N, _>::new(scene, Triangles(triangles::Blocks(own()))),
+        true => Rival::<N, _>::new(scene, Round(balls::Blocks(own()))),
     }
 }
 

@@ -11,6 +11,8 @@ pub struct Work {
     pub primitives: u64,
     /// Lanes that were tested, eight at a time: those primitives and the padding of leaves.
     pub lanes: u64,
+    /// The same, four at a time.
+    pub fours: u64,
 }
 
 impl Sum for Work {
@@ -19,6 +21,7 @@ impl Sum for Work {
             nodes: sum.nodes + w.nodes,
             primitives: sum.primitives + w.primitives,
             lanes: sum.lanes + w.lanes,
+            fours: sum.fours + w.fours,
         })
     }
 }
@@ -46,7 +49,9 @@ impl Watch for Work {
     }
     #[inline(always)]
     fn leaf(&mut self, primitives: impl FnOnce() -> u64, lanes: u32) {
-        self.primitives += primitives();
+        let primitives = primitives();
+        self.primitives += primitives;
         self.lanes += u64::from(lanes);
+        self.fours += primitives.next_multiple_of(4);
     }
 }

@@ -161,8 +161,8 @@ impl Bench {
         Ok(())
     }
 
-    /// What each contender did; counted once a tree, since neither layout nor instruction set changes it, but that
-    /// structs are tested without padding. The product's walk is another.
+    /// What each contender did; counted once a tree, since neither layout nor instruction set changes it, but for the
+    /// padding: structs have none, and blocks of four less. The product's walk is another.
     fn work(&self, turns: &[Turn], kind: RayKind) -> Vec<Option<Work>> {
         let mut known: Vec<(Tree, Work)> = Vec::new();
         let mut of_tree = |tree: Tree, chunks: &[&Chunk]| {
@@ -179,6 +179,10 @@ impl Bench {
             Layout::Luxel => None,
             Layout::Structs => of_tree(contender.tree, chunks).map(|work| Work {
                 lanes: work.primitives,
+                ..work
+            }),
+            Layout::Fours => of_tree(contender.tree, chunks).map(|work| Work {
+                lanes: work.fours,
                 ..work
             }),
             _ => of_tree(contender.tree, chunks),

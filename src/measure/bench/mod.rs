@@ -7,9 +7,10 @@
 //!
 //! **One thing at a time.** An arm is a tree, a layout of primitives and an instruction set. Arms of one subject trace the
 //! same rays in the same order. All trees come from one build and have the same leaves: the binary tree only splits each
-//! eight-wide node into pairs. The layouts hold the same primitives in the same order, and all instruction sets run the same
-//! source. Hence two rows that differ in one word differ in that thing alone. The rivals walk one ray after the other; the
-//! product's kernels are a row of their own, `luxel`, and do more: they also bound the error of every hit.
+//! eight-wide node into pairs, and the one with boxes in bytes rounds them outward. The layouts hold the same primitives in
+//! the same order, and all instruction sets run the same source. Hence two rows that differ in one word differ in that thing
+//! alone. The rivals walk one ray after the other; the product's kernels are a row of their own, `luxel`, and do more: they
+//! also bound the error of every hit.
 //!
 //! **Right before fast.** Before anything is timed, every arm traces every ray that it will be timed on, and t, u, v and the
 //! primitive of the closest hit, or the occlusion, must be those of the product's kernels, bit for bit. If one is not, the
@@ -25,8 +26,8 @@
 //! Differences of a few percent between runs are noise all the same.
 //!
 //! **Work** is counted by a pass of its own, outside the timing: inner nodes whose children's boxes were tested, primitives
-//! that were tested in leaves, and the lanes, of eight, that these took with the padding of leaves. It is a function of the
-//! tree and the rays: neither layout nor instruction set changes it.
+//! that were tested in leaves, and the lanes that these took with the padding of leaves. It is a function of the tree and the
+//! rays: the instruction set does not change it, nor does the layout, but for the padding.
 //!
 //! **Bytes** a primitive are those of nodes and primitives that traversal may touch. **Build** is the wall time of the
 //! product's builder on all threads.

@@ -1,7 +1,7 @@
 //! Layouts of primitives in leaf order: a layout of triangles is a module here; those of spheres share one.
 //!
 //! A *slot* is a place of a primitive. Structs and arrays have one for each, without gaps; lane blocks pad every leaf to a
-//! multiple of eight.
+//! multiple of four or eight.
 
 pub(super) mod sphere_layouts;
 pub(super) mod spheres;
@@ -50,6 +50,12 @@ pub(super) trait Primitives {
     /// The lanes that primitives are tested in, on a machine of lanes `L`.
     type Tested<L: Lanes>: Lanes;
 
+    /// The slots of a leaf are a multiple of it.
+    const UNIT: usize;
+
+    /// Whether it is tested on one lane, too: see [`Layout::runs_on`](super::Layout::runs_on).
+    const SCALAR: bool;
+
     /// Tests a leaf. Leaves the closest hit in `best`, or returns true at once at a hit below `best.t` if `any` will do.
     fn test<L: Lanes>(
         &self,
@@ -66,47 +72,42 @@ pub(super) trait Primitives {
     fn bytes(&self) -> usize;
 }
 
-/// Names leaves by their slots in layouts without gaps.
-pub(super) struct Gapless {
-    /// Primitives before each block of the product, and all of them.
+/// Names leaves by their slots.
+pub(super) struct Slots {
+    /// Slots before each block of the product, and all of them.
     before: Vec<u32>,
 }
 
-impl Gapless {
+impl Slots {
+    /// Of the scene's triangles, or spheres where there are none, padded to a multiple of `unit`. The product's leaves are
+    /// runs of full blocks but for the last.
+    pub(super) fn of(scene: &FlatScene, unit: usize) -> Slots {
+        let triangles = &scene.world.triangles.blocks;
+        match triangles.is_empty() {
+            false => Slots::new(triangles.iter().map(|block| block.prim), unit),
+            true => Slots::new(scene.spheres.blocks.iter().map(|block| block.prim), unit),
+        }
+    }
+
     /// The blocks' primitive indices, `u32::MAX` in unused lanes.
-    fn new(blocks: impl Iterator<Item = [u32; BLOCK]>) -> Gapless {
+    fn new(blocks: impl Iterator<Item = [u32; BLOCK]>, unit: usize) -> Slots {
         let mut before = vec![0];
         let mut sum = 0;
         for prims in blocks {
-            sum += prims.iter().filter(|&&prim| prim != u32::MAX).count() as u32;
+            let used = prims.iter().filter(|&&prim| prim != u32::MAX).count();
+            sum += used.next_multiple_of(unit) as u32;
             before.push(sum);
         }
-        Gapless { before }
+        Slots { before }
     }
 
-    /// Of the scene's triangles, or spheres where there are none.
-    pub(super) fn of(scene: &FlatScene) -> Gapless {
-        let triangles = &scene.world.triangles.blocks;
-        match triangles.is_empty() {
-            false => Gapless::new(triangles.iter().map(|block| block.prim)),
-            true => Gapless::new(scene.spheres.blocks.iter().map(|block| block.prim)),
-        }
-    }
-
+    /// A run of the product's blocks.
     pub(super) fn leaf(&self, block: u32, blocks: u32) -> Child {
         let [first, end] = [block, block + blocks].map(|b| self.before[b as usize]);
         Child {
             first,
             slots: end - first,
         }
-    }
-}
-
-/// The name of a leaf in lane blocks.
-pub(super) fn padded(block: u32, blocks: u32) -> Child {
-    Child {
-        first: BLOCK as u32 * block,
-        slots: BLOCK as u32 * blocks,
     }
 }
 

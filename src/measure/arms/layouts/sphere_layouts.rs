@@ -151,6 +151,8 @@ impl Blocks {
 impl Balls for Blocks {
     type Tested<L: Lanes> = L;
 
+    const UNIT: usize = BLOCK;
+
     type Place<'a> = (&'a SphereBlock, usize);
 
     #[inline(always)]

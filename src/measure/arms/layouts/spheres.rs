@@ -10,6 +10,8 @@ use crate::trace::kernels::sphere::WideRay;
 pub(in super::super) trait Balls {
     /// The lanes that spheres are tested in, on a machine of lanes `L`.
     type Tested<L: Lanes>: Lanes;
+    /// As [`Primitives::UNIT`].
+    const UNIT: usize = 1;
     /// Where some spheres are: found once, so that what is checked is checked once, too.
     type Place<'a>: Copy
     where
@@ -33,6 +35,8 @@ pub(in super::super) struct Round<B>(pub(in super::super) B);
 
 impl<B: Balls> Primitives for Round<B> {
     type Tested<L: Lanes> = B::Tested<L>;
+    const UNIT: usize = B::UNIT;
+    const SCALAR: bool = true;
 
     #[inline(always)]
     fn test<L: Lanes>(

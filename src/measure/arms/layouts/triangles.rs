@@ -10,6 +10,10 @@ use crate::trace::kernels::triangle::{self, Candidates, Corners};
 pub(in super::super) trait Vertices {
     /// The lanes that triangles are tested in, on a machine of lanes `L`.
     type Tested<L: Lanes>: Lanes;
+    /// As [`Primitives::UNIT`].
+    const UNIT: usize = 1;
+    /// As [`Primitives::SCALAR`].
+    const SCALAR: bool = true;
     /// Where some triangles are: found once, so that what is checked is checked once, too.
     type Place<'a>: Copy
     where
@@ -56,6 +60,8 @@ impl<L: Lanes, V: Vertices> Corners<L> for Placed<'_, V> {
 
 impl<V: Vertices> Primitives for Triangles<V> {
     type Tested<L: Lanes> = V::Tested<L>;
+    const UNIT: usize = V::UNIT;
+    const SCALAR: bool = V::SCALAR;
 
     #[inline(always)]
     fn test<L: Lanes>(

@@ -4,9 +4,11 @@
 
 mod binary;
 mod eight;
+mod quantised;
 mod wide;
 
 pub(super) use binary::Binary;
+pub(super) use quantised::Quantised;
 pub(super) use wide::Wide;
 
 use crate::flat::bvh::{STACK, kind};

@@ -89,6 +89,7 @@ fn color(layout: Layout) -> &'static str {
         Layout::Structs => "#c6d3e1",
         Layout::Gathered => "#a3b8cf",
         Layout::Arrays => "#7c9abb",
+        Layout::Fours => "#6689ad",
         Layout::Blocks => "#4f779f",
         Layout::Luxel => "#d9822b",
     }

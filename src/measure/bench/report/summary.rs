@@ -142,6 +142,25 @@ fn choices(records: &[Record]) -> Vec<Choice> {
             ));
         }
     }
+    for &isa in &isas {
+        let of = |r: &Record, layout| in_tree(r) && r.isa == isa && r.layout == layout;
+        all.push(Choice::between(
+            format!(
+                "{} over {}, {isa}",
+                Layout::Blocks.title(),
+                Layout::Fours.title()
+            ),
+            records,
+            |r| side(of(r, Layout::Blocks), of(r, Layout::Fours)),
+            |r| r.tree,
+        ));
+    }
+    all.push(Choice::between(
+        "boxes in floats over bytes".to_owned(),
+        records,
+        |r| side(r.tree == Tree::Bvh8, r.tree == Tree::Bvh8q),
+        |r| (r.layout, r.isa),
+    ));
     all.push(Choice::between(
         "eight children over two".to_owned(),
         records,
