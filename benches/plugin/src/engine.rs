@@ -3,7 +3,7 @@
 
 use cpu_time::ProcessTime;
 use luxel::build::buffer_bytes;
-use luxel::build::bvh::{Accel, Primitives, build};
+use luxel::build::bvh::{Accel, Primitives, Quality, build_with};
 use luxel::flat::FlatScene;
 use luxel::math::Vec3;
 use luxel::measure::bench::Subject;
@@ -42,19 +42,25 @@ pub struct Hit {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Variant {
     isa: Isa,
+    quality: Quality,
 }
 
 impl Variant {
     /// Every name, separated by newlines.
-    pub(crate) const NAMES: &CStr = c"luxel\nluxel-scalar\nluxel-sse2\nluxel-avx2\nluxel-avx512";
+    pub(crate) const NAMES: &CStr =
+        c"luxel\nluxel-fast\nluxel-scalar\nluxel-sse2\nluxel-avx2\nluxel-avx512";
 
     /// The variant of a name, if this machine can run it.
     pub(crate) fn named(name: &str) -> Option<Variant> {
-        let isa = match name.strip_prefix("luxel")? {
-            "" => Isa::best(),
-            level => Isa::available(level.strip_prefix('-')?.parse::<Level>().ok()?)?,
+        let (isa, quality) = match name.strip_prefix("luxel")? {
+            "" => (Isa::best(), Quality::Good),
+            "-fast" => (Isa::best(), Quality::Fast),
+            level => {
+                let level = level.strip_prefix('-')?.parse::<Level>().ok()?;
+                (Isa::available(level)?, Quality::Good)
+            }
         };
-        Some(Variant { isa })
+        Some(Variant { isa, quality })
     }
 }
 
@@ -78,7 +84,7 @@ impl Engine {
             triangles: &triangles,
             ..Primitives::default()
         };
-        let built = build(&primitives, Accel::Bvh);
+        let built = build_with(&primitives, Accel::Bvh, variant.quality);
         let took = start.elapsed();
         let engine = Engine {
             scene: Subject::open(Vec::new()).scene(built),

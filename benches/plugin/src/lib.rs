@@ -6,8 +6,8 @@
 //! travbench bench --data DATA --mesh bunny --plugin =target/release/libluxel_plugin.so --embree LIBEMBREE
 //! ```
 //!
-//! Variants: `luxel` is what luxel does by itself; `luxel-scalar`, `luxel-sse2`, `luxel-avx2` and `luxel-avx512` force an
-//! instruction set, and are not available where the machine lacks it.
+//! Variants: `luxel` is what luxel does by itself; `luxel-fast` the same on the tree of `--tree fast`; `luxel-scalar`,
+//! `luxel-sse2`, `luxel-avx2` and `luxel-avx512` force an instruction set, and are not available where the machine lacks it.
 //!
 //! Here stand the functions and all that is unsafe; `engine` is the rest. Deliberately absent: an option that trades
 //! exactness for time. What is timed is what renders, watertight, with barycentric coordinates and error bounds that the
