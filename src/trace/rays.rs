@@ -68,6 +68,17 @@ impl Rays {
         self.t_max.truncate(n);
     }
 
+    /// A copy of some of them.
+    #[must_use]
+    pub fn part(&self, range: std::ops::Range<usize>) -> Rays {
+        let of = |array: &Vec<f32>| array[range.clone()].to_vec();
+        Rays {
+            origin: [0, 1, 2].map(|axis| of(&self.origin[axis])),
+            dir: [0, 1, 2].map(|axis| of(&self.dir[axis])),
+            t_max: of(&self.t_max),
+        }
+    }
+
     /// Appends a ray.
     pub fn push(&mut self, origin: [f32; 3], dir: [f32; 3], t_max: f32) {
         for axis in 0..3 {

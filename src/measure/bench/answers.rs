@@ -52,13 +52,7 @@ impl Chunk {
     /// Cuts a ray set; `reference` says what is right.
     pub(super) fn cut(rays: &Rays, occlusion: bool, reference: &Contender) -> Vec<Chunk> {
         let part = |first: usize| {
-            let range = first..rays.len().min(first + CHUNK);
-            let of = |array: &Vec<f32>| array[range.clone()].to_vec();
-            let rays = Rays {
-                origin: [0, 1, 2].map(|axis| of(&rays.origin[axis])),
-                dir: [0, 1, 2].map(|axis| of(&rays.dir[axis])),
-                t_max: of(&rays.t_max),
-            };
+            let rays = rays.part(first..rays.len().min(first + CHUNK));
             let mut expected = Answers::default();
             reference.trace(&rays, occlusion, &mut expected);
             Chunk {
