@@ -4,6 +4,7 @@ use luxel::build::bvh::{Accel, build};
 use luxel::flat::FlatScene;
 use luxel::measure::arms::{Layout, Tree};
 use luxel::measure::bench::{LENGTH, Plan, RayKind, RaySets, Record, Source, Subject, meshes, run};
+use luxel::measure::exactness;
 use luxel::trace::{Hits, Isa, Rays, closest_hit};
 use std::collections::BTreeMap;
 use std::fs;
@@ -309,6 +310,40 @@ fn a_run_prints_and_writes() {
     assert_eq!(svg.matches("class=\"n\"").count(), 22);
 }
 
+/// What the product does is right on the hardest inputs, and its cheap twins are not: else there would be nothing to pay for.
+#[test]
+fn exactness_buys_right_answers() {
+    let mut heard = Vec::new();
+    let rows = exactness::run(20_000, Duration::ZERO, |choice| heard.push(choice));
+    assert_eq!(heard, rows.iter().map(|r| r.choice).collect::<Vec<_>>());
+    assert_eq!(rows.len(), 6);
+    for row in &rows {
+        assert!(
+            row.judged > 0 && row.ns.iter().all(|&ns| ns > 0.0),
+            "{row:?}"
+        );
+        let [exact, cheap] = row.wrong;
+        assert!(exact == 0.0 && cheap > 0.0, "{row:?}");
+    }
+}
+
+#[test]
+fn exactness_is_printed_and_written() {
+    let args = ["--exactness", "--csv", "exactness.csv"];
+    let (output, files) = command("exactness", &args);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let table = String::from_utf8(output.stdout).expect("text");
+    for words in ["watertight", "Möller–Trumbore", "Schlick", "epsilon 1e-4"] {
+        assert!(table.contains(words), "no {words} in\n{table}");
+    }
+    let [(name, csv)] = &files[..] else {
+        panic!("{files:?}");
+    };
+    assert_eq!(name, "exactness.csv");
+    assert_eq!(csv.lines().count(), 7);
+    assert!(csv.starts_with("choice,exact,cheap,unit,ns_exact,ns_cheap,"));
+}
+
 #[test]
 fn json_is_for_scripts() {
     let args = [
@@ -337,6 +372,7 @@ fn mistakes_are_told() {
         (&["--size", "2k"][..], 2, "possible values"),
         (&["--room"], 2, "--mesh"),
         (&["--isa", "mmx"], 2, "scalar, sse2"),
+        (&["--exactness", "--svg", "all.svg"], 2, "--svg"),
         (&["--mesh", "none.obj"], 66, "none.obj"),
         (&["--mesh", "two.stl"], 2, "two.stl"),
         (&["--csv", "none/all.csv"], 74, "none"),

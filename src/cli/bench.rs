@@ -12,16 +12,23 @@ use crate::measure::arms::{Layout, Tree};
 use crate::measure::bench::{
     Generator, Plan, RayKind, Record, Source, Stage, Subject, report, run as measure,
 };
+use crate::measure::exactness as exact;
 use crate::trace::Isa;
 use crate::trace::isa::Level;
 use serde_json::json;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+/// How long nobody minds.
+const PATIENCE: Duration = Duration::from_secs(2);
+
 /// Times what is asked for, and prints, draws and writes it.
 pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
     for path in args.csv.iter().chain(&args.svg) {
         check_writable(path)?;
+    }
+    if args.exactness {
+        return exactness(args);
     }
     let records = measure(plan(args)?, teller()).map_err(Failure::different)?;
     if records.is_empty() {
@@ -30,10 +37,6 @@ pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
             "bvh2 is for rivals, bvh8q for blocks of triangles, avx512 for luxel, gathered and fours for triangles on bvh8 with sse2 or avx2, box and brute for small scenes",
         ));
     }
-    let write = |path: &Path, text: String| {
-        film::write_file(path, text.as_bytes())
-            .map_err(|e| Failure::io(format!("\"{}\"", path.display()), &e))
-    };
     if let Some(path) = &args.csv {
         write(path, report::csv(&records))?;
     }
@@ -45,6 +48,47 @@ pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
         false => report::summary(&records) + &report::table(&records),
     };
     print_result(text.as_bytes())
+}
+
+fn write(path: &Path, text: String) -> Result<(), Failure> {
+    film::write_file(path, text.as_bytes())
+        .map_err(|e| Failure::io(format!("\"{}\"", path.display()), &e))
+}
+
+/// Times and judges what exactness costs.
+fn exactness(args: &BenchArgs) -> Result<(), Failure> {
+    let start = Instant::now();
+    let rows = exact::run(args.count as usize, args.time, |choice| {
+        if start.elapsed() >= PATIENCE {
+            say(&format!("{choice} ({})", words(start.elapsed())));
+        }
+    });
+    if let Some(path) = &args.csv {
+        write(path, exact::csv(&rows))?;
+    }
+    let text = match args.json {
+        true => format!("{:#}\n", exact_json(&rows)),
+        false => exact::table(&rows),
+    };
+    print_result(text.as_bytes())
+}
+
+fn exact_json(rows: &[exact::Row]) -> serde_json::Value {
+    let row = |r: &exact::Row| {
+        json!({
+            "choice": r.choice,
+            "exact": r.exact,
+            "cheap": r.cheap,
+            "unit": r.unit,
+            "ns_exact": r.ns[0],
+            "ns_cheap": r.ns[1],
+            "wrong_per_million_exact": r.wrong[0],
+            "wrong_per_million_cheap": r.wrong[1],
+            "judged": r.judged,
+            "counted": r.counted,
+        })
+    };
+    rows.iter().map(row).collect()
 }
 
 /// What was named, else what `--all` or the defaults say.
@@ -123,8 +167,6 @@ fn mesh(path: &Path, args: &BenchArgs) -> Result<Source, Failure> {
 
 /// Says what goes on, every two seconds at most.
 fn teller() -> impl FnMut(&str, Stage) {
-    /// How long nobody minds.
-    const PATIENCE: Duration = Duration::from_secs(2);
     let start = Instant::now();
     let mut told = start;
     move |subject, stage| {

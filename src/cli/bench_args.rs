@@ -20,6 +20,7 @@ Examples:
   luxel bench --size spheres-100 --accel bvh8,brute --layout blocks,luxel
   luxel bench --accel bvh8,bvh8q --layout fours,blocks --isa avx2
   luxel bench --all --svg all.svg                  everything; half an hour and more, 4 GB
+  luxel bench --exactness                          watertight, widened, f64: what each costs, what it saves from
 
 Layouts of primitives: structs (an array of them, one tested at a time), gathered (the same, eight gathered into lanes),
 arrays (one for every coordinate), fours (blocks of four lanes), blocks (of eight), luxel (what `render` runs). Trees: bvh2
@@ -50,6 +51,9 @@ pub(crate) struct BenchArgs {
     /// Instruction sets: scalar, sse2, avx2, avx512 (luxel only) [default: all but sse2]
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = parse_isa)]
     pub(crate) isa: Vec<Isa>,
+    /// What exactness costs: six choices of luxel, each timed and judged beside its cheap twin
+    #[arg(long, conflicts_with_all = ["size", "mesh", "room", "rays", "layout", "accel", "isa", "all", "svg"])]
+    pub(crate) exactness: bool,
     /// Everything above that is not named
     #[arg(long)]
     pub(crate) all: bool,

@@ -4,7 +4,7 @@
 //! the pixels that count; [`errors`] gives the statistics, [`flip`] what an eye would notice, [`heat`] a picture of
 //! either. A value that is not finite is an error at the door ([`Pair::new`]), so none of the numbers can hide it.
 //!
-//! [`referee`] asks the same of what rays hit.
+//! [`referee`] asks the same of what rays hit, and [`exactness`] what being right costs.
 //!
 //! Deliberately absent: the arguments and words of `luxel compare`, the verdict on what error is too much, and any
 //! alignment, scaling or exposure that would make images more alike than they are.
@@ -12,6 +12,7 @@
 pub mod arms;
 pub mod bench;
 mod errors;
+pub mod exactness;
 pub mod flip;
 pub mod heat;
 mod image;

@@ -131,6 +131,11 @@ impl Lanes for F32x8 {
         unsafe { F32x8(_mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0)) }
     }
     #[inline(always)]
+    fn sqrt(self) -> F32x8 {
+        // SAFETY: the machine has AVX, see the module.
+        unsafe { F32x8(_mm256_sqrt_ps(self.0)) }
+    }
+    #[inline(always)]
     fn min(self, other: F32x8) -> F32x8 {
         // SAFETY: the machine has AVX, see the module.
         unsafe { F32x8(_mm256_min_ps(self.0, other.0)) }

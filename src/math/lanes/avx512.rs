@@ -144,6 +144,11 @@ impl Lanes for F32x16 {
         unsafe { F32x16(_mm512_andnot_ps(_mm512_set1_ps(-0.0), self.0)) }
     }
     #[inline(always)]
+    fn sqrt(self) -> F32x16 {
+        // SAFETY: the machine has AVX-512, see the module.
+        unsafe { F32x16(_mm512_sqrt_ps(self.0)) }
+    }
+    #[inline(always)]
     fn min(self, other: F32x16) -> F32x16 {
         // SAFETY: the machine has AVX-512, see the module.
         unsafe { F32x16(_mm512_min_ps(self.0, other.0)) }

@@ -66,6 +66,8 @@ pub(crate) trait Lanes:
     fn bits(mask: Self::Mask) -> u32;
     /// Without the sign bit.
     fn abs(self) -> Self;
+    /// Correctly rounded.
+    fn sqrt(self) -> Self;
     /// `if self < other { self } else { other }`: with NaN, `other`.
     fn min(self, other: Self) -> Self;
     /// `if self > other { self } else { other }`: with NaN, `other`.

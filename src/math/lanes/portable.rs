@@ -116,6 +116,10 @@ impl<const N: usize> Lanes for Floats<N> {
         Floats(self.0.map(f32::abs))
     }
     #[inline(always)]
+    fn sqrt(self) -> Floats<N> {
+        Floats(self.0.map(f32::sqrt))
+    }
+    #[inline(always)]
     fn min(self, other: Floats<N>) -> Floats<N> {
         Floats(from_fn(|i| Lanes::min(self.0[i], other.0[i])))
     }

@@ -44,6 +44,10 @@ impl Lanes for f32 {
         f32::abs(self)
     }
     #[inline(always)]
+    fn sqrt(self) -> f32 {
+        f32::sqrt(self)
+    }
+    #[inline(always)]
     fn min(self, other: f32) -> f32 {
         if self < other { self } else { other }
     }

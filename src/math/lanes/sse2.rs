@@ -164,6 +164,11 @@ impl<const R: usize> Lanes for Floats<R> {
         )
     }
     #[inline(always)]
+    fn sqrt(self) -> Floats<R> {
+        // SAFETY: the machine has SSE2, see the module.
+        Floats(self.0.map(|x| unsafe { _mm_sqrt_ps(x) }))
+    }
+    #[inline(always)]
     fn min(self, other: Floats<R>) -> Floats<R> {
         // SAFETY: the machine has SSE2, see the module.
         Floats(from_fn(|r| unsafe { _mm_min_ps(self.0[r], other.0[r]) }))

@@ -38,8 +38,8 @@ fn computed(x: f32) -> u32 {
 
 /// Bits of all operations on lanes that hold `a[i]` and `b[i]`, lane by lane.
 #[inline(always)]
-fn operations<L: Lanes>(a: &[f32; 16], b: &[f32; 16]) -> Vec<[u32; 23]> {
-    let mut out = vec![[0; 23]; 16];
+fn operations<L: Lanes>(a: &[f32; 16], b: &[f32; 16]) -> Vec<[u32; 24]> {
+    let mut out = vec![[0; 24]; 16];
     let mut at = 0;
     while at < 16 {
         let [x, y] = [L::load(&a[at..]), L::load(&b[at..])];
@@ -53,6 +53,7 @@ fn operations<L: Lanes>(a: &[f32; 16], b: &[f32; 16]) -> Vec<[u32; 23]> {
             L::narrow((w * third + v) * third),
             L::narrow(w - v / third),
             L::narrow(w.sqrt()),
+            x.sqrt(),
             L::narrow(w / v),
             L::narrow(L::Wide::load(&[1e-46; 16]) * w),
         ];
@@ -83,12 +84,12 @@ fn operations<L: Lanes>(a: &[f32; 16], b: &[f32; 16]) -> Vec<[u32; 23]> {
             }
         }
         let bits = L::bits(x.lt(y));
-        (0..L::N).for_each(|i| out[at + i][21] = bits >> i & 1);
+        (0..L::N).for_each(|i| out[at + i][22] = bits >> i & 1);
         let bytes = a.map(|x| (x.to_bits() >> 18) as u8);
         L::load_bytes(&bytes[at..]).store(&mut lanes);
         for i in 0..L::N {
             assert_eq!(lanes[i], f32::from(bytes[at + i]));
-            out[at + i][22] = lanes[i].to_bits();
+            out[at + i][23] = lanes[i].to_bits();
         }
         assert_eq!(
             w.any_not_negative(),
@@ -101,13 +102,13 @@ fn operations<L: Lanes>(a: &[f32; 16], b: &[f32; 16]) -> Vec<[u32; 23]> {
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn on_avx2(a: &[f32; 16], b: &[f32; 16]) -> Vec<[u32; 23]> {
+fn on_avx2(a: &[f32; 16], b: &[f32; 16]) -> Vec<[u32; 24]> {
     operations::<super::avx2::F32x8>(a, b)
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,avx512f,avx512vl,avx512dq,avx512bw")]
-fn on_avx512(a: &[f32; 16], b: &[f32; 16]) -> Vec<[u32; 23]> {
+fn on_avx512(a: &[f32; 16], b: &[f32; 16]) -> Vec<[u32; 24]> {
     operations::<super::avx512::F32x16>(a, b)
 }
 

@@ -3,6 +3,7 @@
 //! An arm is a tree with its primitives in some layout; the instruction set is chosen anew for every batch, so that the two
 //! vary apart. All give the same hits to the bit, since all keep the rules of [`crate::trace::kernels`].
 
+mod cheap;
 mod entries;
 mod layouts;
 mod luxel;
@@ -11,6 +12,7 @@ mod rival;
 mod walk;
 mod work;
 
+pub use cheap::{Rule, twins};
 pub use luxel::Luxel;
 pub use work::Work;
 

@@ -14,13 +14,13 @@ use crate::trace::{Hits, Isa, Rays};
 use std::sync::Arc;
 
 /// A rival.
-struct Rival<N, P> {
-    tree: Tree<N>,
+pub(super) struct Rival<N, P> {
+    pub(super) tree: Tree<N>,
     primitives: P,
 }
 
 impl<N: Node, P: Primitives> Rival<N, P> {
-    fn new(scene: &FlatScene, primitives: P) -> Box<Rival<N, P>> {
+    pub(super) fn new(scene: &FlatScene, primitives: P) -> Box<Rival<N, P>> {
         let slots = Slots::of(scene, P::UNIT);
         let tree = N::tree(&scene.world.bvh, |block, blocks| slots.leaf(block, blocks));
         Box::new(Rival { tree, primitives })

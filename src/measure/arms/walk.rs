@@ -25,9 +25,9 @@ struct Ray<B, T> {
 impl<B: Lanes, T: Lanes> Ray<B, T> {
     /// Nothing for a ray that cannot hit.
     #[inline(always)]
-    fn new(origin: [f32; 3], dir: [f32; 3]) -> Option<Ray<B, T>> {
+    fn new(origin: [f32; 3], dir: [f32; 3], slabs: [f32; 2]) -> Option<Ray<B, T>> {
         Some(Ray {
-            boxes: WalkRay::new(origin, dir)?,
+            boxes: WalkRay::widened(origin, dir, slabs)?,
             tested: WalkRay::new(origin, dir)?,
         })
     }
@@ -51,7 +51,7 @@ pub(super) fn batch<L: Lanes, N: Node, P: Primitives>(
         let mut best = Best::below(limit(t_max, any));
         let mut found = false;
         if t_max > 0.0
-            && let Some(ray) = Ray::new(origin, dir)
+            && let Some(ray) = Ray::new(origin, dir, tree.slabs)
         {
             found = walk::<L, N, P>(tree, primitives, &ray, any, &mut stack, &mut best, watch);
         }

@@ -33,7 +33,7 @@
 //! product's builder on all threads.
 
 mod answers;
-mod clock;
+pub(super) mod clock;
 mod contender;
 mod generator;
 mod matrix;

@@ -73,7 +73,7 @@ pub(super) fn hit_error(scene: &FlatScene, ray: [[f32; 3]; 2], hit: &Best) -> f3
 /// The bounds of all hits on triangles of the world, in lanes: (Σ |Nᵢ| Eᵢ) / |N| with the normal N in f64, since a sliver's
 /// cross product cancels; 0 for a triangle without area.
 #[inline(always)]
-pub(super) fn world_errors<L: Lanes>(triangles: &Triangles, hits: &mut Hits) {
+pub(crate) fn world_errors<L: Lanes>(triangles: &Triangles, hits: &mut Hits) {
     let mut at = 0;
     while at < hits.prim.len() {
         let mut v = [[[0.0; MOST_LANES]; 3]; 3];

@@ -20,7 +20,7 @@
 )]
 
 mod batch;
-mod bound;
+pub(crate) mod bound;
 mod entries;
 mod group;
 mod instances;

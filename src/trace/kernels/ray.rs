@@ -4,13 +4,12 @@ use super::batch::MOST_LANES;
 use crate::flat::BLOCK;
 use crate::math::lanes::Lanes;
 
-/// Factors of 1 / d that widen a slab interval by four units in the last place at each end.
+/// Factors of 1 / d, for near planes and far ones, that widen a slab interval by four units in the last place at each end.
 ///
 /// A plane's parameter is `fl(fl(plane − o) · fl(fl(1 / d) · factor))`: four roundings, (1 + ε)⁴ with ε = 2⁻²⁴, so at
 /// most two units of 2⁻²³ away from the exact one; a computed t takes the third, and the fourth is slack (Ize, *Robust BVH
 /// Ray Traversal*, 2013, widens the far end alone by two; both ends are needed for a hit's t to lie inside the interval).
-const NEAR: f32 = 1.0 - 4.0 * f32::EPSILON;
-const FAR: f32 = 1.0 + 4.0 * f32::EPSILON;
+pub(crate) const WIDENED: [f32; 2] = [1.0 - 4.0 * f32::EPSILON, 1.0 + 4.0 * f32::EPSILON];
 
 /// One of the six planes of a node's boxes, by where its eight lanes begin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -100,9 +99,15 @@ pub(super) struct Setup<L> {
 impl<L: Lanes> Setup<L> {
     #[inline(always)]
     pub(super) fn new(dir: [L; 3]) -> Setup<L> {
+        Setup::widened(dir, WIDENED)
+    }
+
+    /// With other factors in place of [`WIDENED`].
+    #[inline(always)]
+    fn widened(dir: [L; 3], [nearer, farther]: [f32; 2]) -> Setup<L> {
         let one = L::splat(1.0);
         let inv = [one / dir[0], one / dir[1], one / dir[2]];
-        let [nearer, farther] = [L::splat(NEAR), L::splat(FAR)];
+        let [nearer, farther] = [L::splat(nearer), L::splat(farther)];
         let [x, y, z] = [dir[0].abs(), dir[1].abs(), dir[2].abs()];
         let y_first = x.lt(y);
         let z_first = x.max(y).lt(z);
@@ -187,8 +192,14 @@ impl<L: Lanes> WalkRay<L> {
     /// Nothing for a ray that cannot hit: something is not finite, or the direction is zero.
     #[inline(always)]
     pub(crate) fn new(origin: [f32; 3], dir: [f32; 3]) -> Option<WalkRay<L>> {
+        WalkRay::widened(origin, dir, WIDENED)
+    }
+
+    /// With other factors in place of [`WIDENED`], to measure what those cost.
+    #[inline(always)]
+    pub(crate) fn widened(origin: [f32; 3], dir: [f32; 3], by: [f32; 2]) -> Option<WalkRay<L>> {
         let sound = Setup::<f32>::sound(origin, dir) != 0;
-        sound.then(|| WalkRay::prepared(origin, dir, &Setup::<f32>::new(dir)))
+        sound.then(|| WalkRay::prepared(origin, dir, &Setup::<f32>::widened(dir, by)))
     }
 
     /// A ray whose setup is done, in all lanes.

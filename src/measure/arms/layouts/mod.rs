@@ -37,7 +37,7 @@ impl Best {
 
     /// Takes the candidate if it comes first by (t, prim).
     #[inline(always)]
-    fn offer(&mut self, candidate: Best) {
+    pub(super) fn offer(&mut self, candidate: Best) {
         let tie = candidate.t == self.t && self.prim != Hits::NONE && candidate.prim < self.prim;
         if candidate.t < self.t || tie {
             *self = candidate;
@@ -121,7 +121,7 @@ fn used(blocks: impl Iterator<Item = [u32; BLOCK]>) -> impl Iterator<Item = (usi
 
 /// The lowest bits, one for each slot that is left.
 #[inline(always)]
-fn first(slots: u32) -> u32 {
+pub(super) fn first(slots: u32) -> u32 {
     match 1u32.checked_shl(slots) {
         Some(bit) => bit - 1,
         None => u32::MAX,
@@ -130,6 +130,6 @@ fn first(slots: u32) -> u32 {
 
 /// The lane of a slot in its block, which for as many lanes as a block has is 0, as the compiler can see.
 #[inline(always)]
-fn first_lane<L: Lanes>(slot: usize) -> usize {
+pub(super) fn first_lane<L: Lanes>(slot: usize) -> usize {
     slot % BLOCK / L::N * L::N
 }

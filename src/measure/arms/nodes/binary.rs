@@ -9,7 +9,7 @@ use crate::flat::bvh::WIDTH;
 use crate::flat::{self, Bvh};
 use crate::math::Aabb;
 use crate::math::lanes::Lanes;
-use crate::trace::kernels::ray::{Interval, Plane, WalkRay};
+use crate::trace::kernels::ray::{Interval, Plane, WIDENED, WalkRay};
 
 /// A node.
 #[repr(C, align(64))]
@@ -34,6 +34,7 @@ impl Node for Binary {
         Tree {
             nodes: maker.nodes,
             root,
+            slabs: WIDENED,
         }
     }
 

@@ -80,6 +80,8 @@ pub(super) struct Tree<N> {
     pub(super) nodes: Vec<N>,
     /// `None` for the empty tree.
     pub(super) root: Option<Child>,
+    /// How boxes are widened, as [`WIDENED`](crate::trace::kernels::ray::WIDENED) says.
+    pub(super) slabs: [f32; 2],
 }
 
 /// A child of the product's tree.

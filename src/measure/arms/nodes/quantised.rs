@@ -11,7 +11,7 @@ use super::{Child, Node, Stack, Tree, child, root};
 use crate::flat::bvh::WIDTH;
 use crate::flat::{self, Bvh, LinearNode};
 use crate::math::lanes::Lanes;
-use crate::trace::kernels::ray::{Plane, WalkRay};
+use crate::trace::kernels::ray::{Plane, WIDENED, WalkRay};
 
 /// A node.
 #[repr(C, align(64))]
@@ -53,6 +53,7 @@ impl Node for Quantised {
         Tree {
             nodes: nodes.collect(),
             root: root(bvh, &leaf),
+            slabs: WIDENED,
         }
     }
 

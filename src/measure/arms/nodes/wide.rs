@@ -6,7 +6,7 @@ use super::{Child, Node, Stack, Tree, child, root};
 use crate::flat::bvh::WIDTH;
 use crate::flat::{self, Bvh};
 use crate::math::lanes::Lanes;
-use crate::trace::kernels::ray::WalkRay;
+use crate::trace::kernels::ray::{WIDENED, WalkRay};
 
 /// A node.
 #[repr(C, align(64))]
@@ -39,6 +39,7 @@ impl Node for Wide {
         Tree {
             nodes: nodes.collect(),
             root: root(bvh, &leaf),
+            slabs: WIDENED,
         }
     }
 
