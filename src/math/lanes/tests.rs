@@ -126,6 +126,11 @@ fn every_backend_gives_the_bits_of_one_lane() {
             "portable, turn {turn}"
         );
         assert_eq!(
+            operations::<portable::F32x4>(&a, &b),
+            expected,
+            "four portable, turn {turn}"
+        );
+        assert_eq!(
             operations::<baseline::F32x4>(&a, &b),
             expected,
             "four, turn {turn}"
