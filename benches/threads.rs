@@ -61,7 +61,7 @@ impl Bench {
                 let quality = [Quality::Good, Quality::Fast][what - 2];
                 // A build cannot be halved: two threads do two, one after the other.
                 for _ in 0..threads {
-                    build_with(&self.subject.primitives(), Accel::Bvh, quality);
+                    drop(build_with(&self.subject.primitives(), Accel::Bvh, quality));
                 }
             }
         });
