@@ -2,6 +2,7 @@
 
 use super::author_args::{ConvertArgs, TurntableArgs};
 use super::bench_args::BenchArgs;
+use super::replay_args::ReplayArgs;
 use crate::build::{Accel, Quality};
 use crate::film::Aov;
 use crate::scene::RenderDesc;
@@ -64,6 +65,7 @@ Examples:
   luxel render room.ron --spp 1024 --time 30s      whichever comes first
   luxel render room.ron --size 128x128 --spp 4     a quick look
   luxel render room.ron -o - | viewer              PNG on stdout
+  luxel render room.ron --replay 0,12,7,3          what sample 3 of pixel (12, 7) of frame 0 met
 
 Ctrl-C writes what there is to NAME.partial.png (or .exr) and exits with 130.
 With equal samples the picture is the same to the bit for any --threads, --tile, --isa, --accel and --tree.")]
@@ -127,7 +129,7 @@ pub(crate) struct RenderArgs {
     /// Reflectance of glass and plastic
     #[arg(long, value_enum, default_value_t = FresnelArg::Exact)]
     pub(crate) fresnel: FresnelArg,
-    /// Refuse to render (65) where `luxel check` has warnings
+    /// Fail (65) where `luxel check` has warnings, before rendering, or where a sample is not finite, after it
     #[arg(long)]
     pub(crate) strict: bool,
     /// Most memory that the files of the scene may take: 512M, 8G
@@ -136,6 +138,8 @@ pub(crate) struct RenderArgs {
     /// Write what the render cost as JSON
     #[arg(long, value_name = "FILE.json")]
     pub(crate) stats: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) replay: ReplayArgs,
 }
 
 /// `luxel check`.

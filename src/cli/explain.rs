@@ -2,6 +2,7 @@
 
 use super::args::InspectArgs;
 use super::failure::Failure;
+use super::names::entity_name;
 use super::{load, print_result};
 use crate::build::{BufferBytes, BuildTimes, buffer_bytes};
 use crate::flat::{ColorSource, FlatScene, Material, MaterialId, ObjectId, Opacity, Scatter};
@@ -144,11 +145,7 @@ impl Subject<'_> {
     }
 
     fn name(&self, object: ObjectId) -> String {
-        let entity = self.desc.entities.get(object.0 as usize);
-        match entity.and_then(|e| e.value.name.as_ref()) {
-            Some(name) => format!("\"{name}\""),
-            None => format!("entity {}", object.0),
-        }
+        entity_name(self.desc, object)
     }
 
     /// Settings in force, whether written or by default.

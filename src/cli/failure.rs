@@ -79,6 +79,17 @@ impl Failure {
         })
     }
 
+    /// `--strict`: samples that are not finite count as an error.
+    pub(crate) fn lost_samples(lost: impl fmt::Display, hint: &str) -> Failure {
+        Failure {
+            code: code::DATA,
+            what: What::Message(
+                format!("--strict allows no samples that are not finite: {lost}"),
+                Some(hint.to_owned()),
+            ),
+        }
+    }
+
     /// A file named on the command line is there, but its content cannot be used. The message names the file.
     pub(crate) fn bad_file(message: impl fmt::Display) -> Failure {
         Failure {

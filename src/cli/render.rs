@@ -5,7 +5,7 @@ use super::failure::Failure;
 use super::output::{Encoding, Format, Output, check_writable};
 use super::progress::Progress;
 use super::stats::Account;
-use super::{diagnostics, interrupt, load, print_result, say};
+use super::{diagnostics, interrupt, load, print_result, replay, say};
 use crate::film;
 use crate::math;
 use crate::render::{Control, Rendering, Settings};
@@ -20,6 +20,11 @@ use std::time::Instant;
 /// Renders one frame and writes it.
 pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let start = Instant::now();
+    if let Some(named) = args.replay.replay {
+        let (loaded, _) = load::scene(&args.scene, args.max_memory)?;
+        let settings = settings(args, &loaded.desc);
+        return replay::run(loaded, settings, named);
+    }
     let output = Output::choose(args.output.as_deref(), &args.scene, &args.aov)?;
     if let Some(path) = &args.stats {
         check_stats(path)?;
@@ -60,6 +65,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let account = Account {
         output: output.to_string(),
         film: &rendering.film,
+        non_finite: &rendering.non_finite,
         stats: rendering.stats,
         load,
         files,
@@ -80,14 +86,19 @@ fn tell(args: &RenderArgs, output: &Output, account: &Account<'_>) -> Result<(),
         print_result(format!("{output}\n").as_bytes())?;
     }
     say(&account.line());
-    let bad = account.film.total_non_finite();
-    if bad > 0 {
-        say(&format!(
-            "warning: {bad} samples were not finite and were left out"
-        ));
+    match account.lost() {
+        None => Ok(()),
+        Some(lost) if args.strict => Err(Failure::lost_samples(lost, LOST_HINT)),
+        Some(lost) => {
+            say(&format!("warning: {lost}\n  = help: {LOST_HINT}"));
+            Ok(())
+        }
     }
-    Ok(())
 }
+
+/// What to do about samples that are not finite.
+const LOST_HINT: &str =
+    "`--replay FRAME,X,Y,SAMPLE` with the same options shows how one came about";
 
 /// Saves what there is of a render that was stopped. Returns the failure to end with.
 fn write_partial(output: &Output, rendering: &Rendering, encoding: &Encoding<'_>) -> Failure {

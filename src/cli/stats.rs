@@ -3,9 +3,12 @@
 use super::patience::megabytes;
 use super::progress::words;
 use crate::film::Film;
-use crate::render::Stats;
+use crate::render::{NonFinite, Stats};
 use serde_json::json;
 use std::time::Duration;
+
+/// So many samples that are not finite are named for people; the JSON has more.
+const TOLD: usize = 4;
 
 /// Everything about a finished render.
 pub(crate) struct Account<'a> {
@@ -13,6 +16,8 @@ pub(crate) struct Account<'a> {
     pub(crate) output: String,
     /// The sums.
     pub(crate) film: &'a Film,
+    /// The first of the samples that were not finite.
+    pub(crate) non_finite: &'a [NonFinite],
     /// What rendering cost.
     pub(crate) stats: Stats,
     /// Reading the scene and its files.
@@ -47,6 +52,26 @@ impl Account<'_> {
         )
     }
 
+    /// How many samples were not finite, and which; `None` if all were.
+    pub(crate) fn lost(&self) -> Option<String> {
+        let count = self.film.total_non_finite();
+        let name = |n: &NonFinite| {
+            let (x, y) = n.pixel;
+            format!(
+                "\n  frame {}, pixel ({x}, {y}), sample {}, bounce {}",
+                n.frame, n.sample, n.bounce
+            )
+        };
+        let named: String = self.non_finite.iter().take(TOLD).map(name).collect();
+        let rest = match count.saturating_sub(TOLD as u64) {
+            0 => String::new(),
+            rest => format!("\n  and {rest} more"),
+        };
+        (count > 0).then(|| {
+            format!("{count} samples were not finite and were left out of their pixels' means:{named}{rest}")
+        })
+    }
+
     /// The same and more, times in seconds.
     pub(crate) fn json(&self) -> String {
         let stats = &self.stats;
@@ -57,6 +82,12 @@ impl Account<'_> {
             "spp": stats.spp,
             "samples": self.film.total_samples(),
             "non_finite_samples": self.film.total_non_finite(),
+            "non_finite": self.non_finite.iter().map(|n| json!({
+                "frame": n.frame,
+                "pixel": [n.pixel.0, n.pixel.1],
+                "sample": n.sample,
+                "bounce": n.bounce,
+            })).collect::<Vec<_>>(),
             "stopped": stats.stopped,
             "threads": stats.threads,
             "isa": self.isa,

@@ -1,5 +1,6 @@
 //! Frames of one scene.
 
+use super::lost::{self, NonFinite};
 use super::metadata::{metadata, scene_hash};
 use super::passes::Passes;
 use super::tiles::{self, Tile};
@@ -24,6 +25,9 @@ pub struct Rendering {
     pub metadata: Metadata,
     /// What it cost.
     pub stats: Stats,
+    /// Samples that the film left out because they are not finite: of all that [`Film::total_non_finite`] counts, the
+    /// first by row, column and index.
+    pub non_finite: Vec<NonFinite>,
 }
 
 /// Renders frames of a scene on threads of its own. Geometry that no frame changes is kept from one to the next.
@@ -82,7 +86,7 @@ impl Renderer {
     pub fn render(&mut self, frame: u32, control: &Control) -> Rendering {
         let deadline = self.settings.time.map(|time| Instant::now() + time);
         let (scene, times) = self.build(frame);
-        let (film, mut stats) = self.trace(&scene, control, deadline);
+        let (film, non_finite, mut stats) = self.trace(&scene, control, deadline);
         stats.bytes = times.bytes;
         stats.stages = Stages {
             extract: times.extract,
@@ -94,6 +98,7 @@ impl Renderer {
             film,
             metadata: metadata(&self.hash, &scene, &self.settings, stats.spp),
             stats,
+            non_finite,
         }
     }
 
@@ -102,7 +107,7 @@ impl Renderer {
         scene: &FlatScene,
         control: &Control,
         deadline: Option<Instant>,
-    ) -> (Film, Stats) {
+    ) -> (Film, Vec<NonFinite>, Stats) {
         let settings = &self.settings;
         let (width, height) = settings.size;
         control.expect(u64::from(width) * u64::from(height) * u64::from(settings.spp));
@@ -127,7 +132,8 @@ impl Renderer {
             stats.closest_rays += sums.rays[0];
             stats.occlusion_rays += sums.rays[1];
         }
-        (assemble(width, height, tiles), stats)
+        let non_finite = lost::find(&tiles, scene, &settings.trace);
+        (assemble(width, height, tiles), non_finite, stats)
     }
 }
 

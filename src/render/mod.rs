@@ -9,6 +9,7 @@
 
 mod control;
 mod frame;
+mod lost;
 mod metadata;
 mod passes;
 mod settings;
@@ -17,5 +18,6 @@ mod tiles;
 
 pub use control::Control;
 pub use frame::{Renderer, Rendering};
+pub use lost::NonFinite;
 pub use settings::Settings;
 pub use stats::{Stages, Stats};

@@ -62,7 +62,7 @@ impl<'a> Tracer<'a> {
                 let range = start..start.saturating_add(step as u32).min(samples.end);
                 let samples = range.len();
                 start_paths(wave, scene, options, rect, (group.clone(), range));
-                trace_paths(wave, scene, options, sums);
+                trace_paths(wave, scene, options, &mut sums.rays);
                 accumulate(wave, sums, group.clone(), samples, scene.rebase.scale);
             }
         }
@@ -78,6 +78,7 @@ impl TileSums {
             rgb_squared: vec![[0.0; 3]; pixels],
             count: vec![0; pixels],
             non_finite: vec![0; pixels],
+            lost: Vec::new(),
             hit_count: vec![0; features],
             albedo: vec![[0.0; 3]; features],
             normal: vec![[0.0; 3]; features],
@@ -92,7 +93,7 @@ impl TileSums {
 }
 
 /// Fills the wave with the camera rays of some pixels and samples; slots are pixel by pixel, sample by sample.
-fn start_paths(
+pub(super) fn start_paths(
     wave: &mut Wave,
     scene: &FlatScene,
     options: &TraceOptions,
@@ -118,7 +119,7 @@ fn start_paths(
 }
 
 /// The stages of every bounce, until no path is left.
-fn trace_paths(wave: &mut Wave, scene: &FlatScene, options: &TraceOptions, sums: &mut TileSums) {
+fn trace_paths(wave: &mut Wave, scene: &FlatScene, options: &TraceOptions, rays: &mut [u64; 2]) {
     for index in 0..=options.max_bounces {
         if wave.paths.len() == 0 {
             return;
@@ -128,36 +129,56 @@ fn trace_paths(wave: &mut Wave, scene: &FlatScene, options: &TraceOptions, sums:
             options,
             index,
         };
-        closest_hit(scene, options.isa, &wave.paths.rays, &mut wave.hits);
-        sums.rays[0] += wave.paths.len() as u64;
-        if scene.needs.opacity {
-            let number = random(options.sampler, index);
-            sums.rays[0] += pass_paths(wave, scene, options.isa, number);
-        }
-        surface(wave, scene);
-        if scene.needs.vertex_colors {
-            color_by_vertices(wave, scene);
-        }
-        if index == 0 && options.features {
-            record_features(wave, scene);
-        }
-        emission(wave, bounce);
+        arrive(wave, bounce, rays);
         if index == options.max_bounces {
             return;
         }
-        sort_by_scatter(wave, scene);
-        if options.nee && scene.needs.lights && (scene.needs.diffuse || scene.needs.plastic) {
-            sample_lights(wave, bounce);
-            sums.rays[1] += find_blocked(wave, scene, options);
-            add_lights(wave);
-        }
-        for kind in kinds(&scene.needs) {
-            sample_bsdf(wave, bounce, kind);
-        }
-        if options.roulette && index + 1 >= ROULETTE_START {
-            roulette(wave, bounce);
-        }
+        leave(wave, bounce, rays);
         wave.paths.compact(&wave.alive);
+    }
+}
+
+/// The first half of a bounce: what the paths meet, and what it emits.
+pub(super) fn arrive(wave: &mut Wave, bounce: Bounce, rays: &mut [u64; 2]) {
+    let Bounce {
+        scene,
+        options,
+        index,
+    } = bounce;
+    closest_hit(scene, options.isa, &wave.paths.rays, &mut wave.hits);
+    rays[0] += wave.paths.len() as u64;
+    if scene.needs.opacity {
+        let number = random(options.sampler, index);
+        rays[0] += pass_paths(wave, scene, options.isa, number);
+    }
+    surface(wave, scene);
+    if scene.needs.vertex_colors {
+        color_by_vertices(wave, scene);
+    }
+    if index == 0 && options.features {
+        record_features(wave, scene);
+    }
+    emission(wave, bounce);
+}
+
+/// The second half: what lights send there, and where the paths go on; `wave.alive` says which do.
+pub(super) fn leave(wave: &mut Wave, bounce: Bounce, rays: &mut [u64; 2]) {
+    let Bounce {
+        scene,
+        options,
+        index,
+    } = bounce;
+    sort_by_scatter(wave, scene);
+    if options.nee && scene.needs.lights && (scene.needs.diffuse || scene.needs.plastic) {
+        sample_lights(wave, bounce);
+        rays[1] += find_blocked(wave, scene, options);
+        add_lights(wave);
+    }
+    for kind in kinds(&scene.needs) {
+        sample_bsdf(wave, bounce, kind);
+    }
+    if options.roulette && index + 1 >= ROULETTE_START {
+        roulette(wave, bounce);
     }
 }
 
@@ -314,7 +335,7 @@ fn accumulate(wave: &Wave, sums: &mut TileSums, pixels: Range<usize>, samples: u
                 sums.rgb_squared[pixel][k] += c * c;
             }
         } else {
-            sums.non_finite[pixel] += 1;
+            sums.lose(pixel, slots.sample[slot]);
         }
         if !slots.depth.is_empty() && slots.depth[slot].is_finite() {
             sums.hit_count[pixel] += 1;
@@ -363,8 +384,8 @@ fn trace_ids(
     }
 }
 
-/// Triangle index in its file (0 for a sphere) and index of the entity.
-fn identity(scene: &FlatScene, prim: u32, instance: u32) -> (u32, u32) {
+/// Triangle index in its file (0 for a sphere) and index of the entity of what was hit.
+pub(super) fn identity(scene: &FlatScene, prim: u32, instance: u32) -> (u32, u32) {
     if prim & Spheres::TAG != 0 {
         return (0, scene.spheres.object[(prim & !Spheres::TAG) as usize].0);
     }

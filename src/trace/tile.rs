@@ -13,6 +13,15 @@ pub struct Rect {
     pub height: u32,
 }
 
+/// A sample that was left out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct LostSample {
+    /// Index of the pixel in its tile.
+    pub pixel: u32,
+    /// Index of the sample in its pixel.
+    pub sample: u32,
+}
+
 /// Sums over the samples of each pixel of a tile, row by row, f64, added in the order of the sample index.
 /// Arrays that were not asked for are empty.
 #[derive(Clone, Debug, Default)]
@@ -25,6 +34,8 @@ pub struct TileSums {
     pub count: Vec<u32>,
     /// Samples left out because their radiance was not finite.
     pub non_finite: Vec<u32>,
+    /// The first of these samples, by pixel and then by index, as [`TileSums::MAX_LOST`] allows; not in this order.
+    pub lost: Vec<LostSample>,
     /// Samples whose camera ray hit something: the count of the four below.
     pub hit_count: Vec<u32>,
     /// Albedo of the first hit; 1 for glass and mirror.
@@ -43,4 +54,27 @@ pub struct TileSums {
     pub entity: Vec<u32>,
     /// Rays traced: closest hits and occlusion tests.
     pub rays: [u64; 2],
+}
+
+impl TileSums {
+    /// So many lost samples are remembered. The first ones of an image are among the first ones of its tiles, so that the
+    /// cut into tiles does not change what is listed.
+    pub const MAX_LOST: usize = 32;
+
+    /// Counts a sample as left out, and remembers which if it is one of the first.
+    #[cold]
+    pub(super) fn lose(&mut self, pixel: usize, sample: u32) {
+        self.non_finite[pixel] += 1;
+        let lost = LostSample {
+            pixel: pixel as u32,
+            sample,
+        };
+        if self.lost.len() < TileSums::MAX_LOST {
+            self.lost.push(lost);
+        } else if let Some(last) = self.lost.iter_mut().max()
+            && lost < *last
+        {
+            *last = lost;
+        }
+    }
 }

@@ -1,0 +1,48 @@
+//! Samples that are not finite, by name.
+//!
+//! The rule: such a sample is counted and left out, of the sums and of the count that they are divided by, so that a pixel
+//! is the mean of its finite samples. A pixel without any is black.
+
+use super::tiles::Tile;
+use crate::flat::FlatScene;
+use crate::trace::{TileSums, TraceOptions, replay};
+
+/// A sample whose radiance is not finite.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NonFinite {
+    /// Frame.
+    pub frame: u32,
+    /// Column and row of the pixel, from the top left.
+    pub pixel: (u32, u32),
+    /// Index in the pixel.
+    pub sample: u32,
+    /// Bounce at which the radiance ceased to be finite; 0 is the first hit.
+    pub bounce: u32,
+}
+
+/// The first [`TileSums::MAX_LOST`] of an image, by row, column and index. Tracing keeps no record of bounces: these few are
+/// traced once more to find theirs.
+pub(super) fn find(tiles: &[Tile], scene: &FlatScene, options: &TraceOptions) -> Vec<NonFinite> {
+    let mut all: Vec<(u32, u32, u32)> = tiles
+        .iter()
+        .flat_map(|(rect, sums)| {
+            sums.lost.iter().map(move |lost| {
+                let [x, y] = [lost.pixel % rect.width, lost.pixel / rect.width];
+                (rect.y + y, rect.x + x, lost.sample)
+            })
+        })
+        .collect();
+    all.sort_unstable();
+    all.truncate(TileSums::MAX_LOST);
+    all.into_iter()
+        .map(|(y, x, sample)| NonFinite {
+            frame: scene.frame,
+            pixel: (x, y),
+            sample,
+            // Replayed to the bit, so that there is such a bounce.
+            bounce: replay(scene, options, (x, y), sample)
+                .lost_at()
+                .unwrap_or(0),
+        })
+        .collect()
+}
