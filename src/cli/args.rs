@@ -3,6 +3,7 @@
 use super::author_args::{ConvertArgs, TurntableArgs};
 use super::bench_args::BenchArgs;
 use super::replay_args::ReplayArgs;
+use super::stability_args::StabilityArgs;
 use crate::build::{Accel, Quality};
 use crate::film::Aov;
 use crate::scene::RenderDesc;
@@ -28,8 +29,9 @@ Examples:
   luxel explain room.ron                           what the scene makes luxel do
   luxel compare quick.exr reference.exr            how wrong a picture is
   luxel bench                                      how fast rays are traced, and why
+  luxel stability room.ron                         what goes wrong with the scene at other sizes and places
 
-Exit codes: 0 done, 1 images differ by more than --max (bench: the arms' hits do), 2 usage, 65 bad scene or image, 66 missing file, 70 bug, 74 i/o, 130 stopped"
+Exit codes: 0 done, 1 images differ by more than --max (bench: the arms' hits do; stability: the scene goes wrong), 2 usage, 65 bad scene or image, 66 missing file, 70 bug, 74 i/o, 130 stopped"
 )]
 pub(crate) struct Cli {
     /// What to do.
@@ -54,6 +56,8 @@ pub(crate) enum Command {
     Compare(CompareArgs),
     /// Measure traversal: layouts, instruction sets, trees, rays, on generated meshes or yours
     Bench(Box<BenchArgs>),
+    /// Try a scene at other sizes and places: leaks, self-hits, what goes wrong first
+    Stability(StabilityArgs),
 }
 
 /// `luxel render`.

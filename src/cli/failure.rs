@@ -106,6 +106,14 @@ impl Failure {
         }
     }
 
+    /// A scene goes wrong somewhere, which has been said.
+    pub(crate) fn unstable() -> Failure {
+        Failure {
+            code: code::DIFFERENT,
+            what: What::Said,
+        }
+    }
+
     /// Reading or writing failed.
     pub(crate) fn io(what: impl fmt::Display, cause: &dyn fmt::Display) -> Failure {
         Failure {

@@ -83,6 +83,11 @@ impl Loaded {
         self.assets.memory()
     }
 
+    /// What renderers are made of, for those who start several.
+    pub(crate) fn into_parts(self) -> (SceneDesc, World, AssetStore) {
+        (self.desc, self.world, self.assets)
+    }
+
     /// Starts the renderer's threads.
     pub(crate) fn renderer(self, settings: Settings) -> Result<Renderer, Failure> {
         Renderer::new(&self.desc, self.world, &self.assets, settings)

@@ -24,6 +24,8 @@ mod progress;
 mod render;
 mod replay;
 mod replay_args;
+mod stability;
+mod stability_args;
 mod start;
 mod stats;
 mod turntable;
@@ -48,6 +50,7 @@ pub fn run() -> ExitCode {
         Command::Explain(args) => explain::run(args),
         Command::Compare(args) => compare::run(args),
         Command::Bench(args) => bench::run(args),
+        Command::Stability(args) => stability::run(args),
     };
     match done {
         Ok(()) => ExitCode::from(code::DONE),

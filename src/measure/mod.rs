@@ -4,7 +4,8 @@
 //! the pixels that count; [`errors`] gives the statistics, [`flip`] what an eye would notice, [`heat`] a picture of
 //! either. A value that is not finite is an error at the door ([`Pair::new`]), so none of the numbers can hide it.
 //!
-//! [`referee`] asks the same of what rays hit, and [`exactness`] what being right costs.
+//! [`referee`] asks the same of what rays hit, [`exactness`] what being right costs, and [`stability`] what becomes of a
+//! scene at other sizes and places.
 //!
 //! Deliberately absent: the arguments and words of `luxel compare`, the verdict on what error is too much, and any
 //! alignment, scaling or exposure that would make images more alike than they are.
@@ -18,6 +19,7 @@ pub mod heat;
 mod image;
 mod pair;
 pub mod referee;
+pub mod stability;
 
 pub use self::errors::{Bias, Errors, Maximum, errors, relative_squared};
 pub use self::image::{Image, ReadError};

@@ -71,6 +71,18 @@ impl Renderer {
         &self.hash
     }
 
+    /// What frames are rendered with.
+    #[must_use]
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Gives the world back.
+    #[must_use]
+    pub fn into_world(self) -> World {
+        self.world
+    }
+
     /// Poses the world at `frame / fps` seconds and builds what tracing reads. Posing counts as extraction.
     pub fn build(&mut self, frame: u32) -> (FlatScene, BuildTimes) {
         let start = Instant::now();

@@ -385,7 +385,8 @@ fn trace_ids(
 }
 
 /// Triangle index in its file (0 for a sphere) and index of the entity of what was hit.
-pub(super) fn identity(scene: &FlatScene, prim: u32, instance: u32) -> (u32, u32) {
+#[must_use]
+pub fn identity(scene: &FlatScene, prim: u32, instance: u32) -> (u32, u32) {
     if prim & Spheres::TAG != 0 {
         return (0, scene.spheres.object[(prim & !Spheres::TAG) as usize].0);
     }

@@ -60,6 +60,14 @@ pub(super) fn place(scene: &FlatScene, rays: &Rays, hits: &Hits, i: usize) -> Po
     point(scene, rays, hits, i)
 }
 
+/// Position and unit geometric normal (on the authored outside) of a hit, as the surface stage computes them: where rays
+/// leave by [`Hits::err`]. For measuring.
+#[must_use]
+pub fn hit_place(scene: &FlatScene, rays: &Rays, hits: &Hits, i: usize) -> [[f32; 3]; 2] {
+    let point = place(scene, rays, hits, i);
+    [point.position.to_array(), point.ng.to_array()]
+}
+
 /// By force: the rare caller must not take the inlining from the frequent one (measured: 8 % more instructions here).
 #[inline(always)]
 fn point(scene: &FlatScene, rays: &Rays, hits: &Hits, i: usize) -> Point {
