@@ -22,7 +22,7 @@
 //! | [`trace`] | `&FlatScene` | sums of radiance samples of a tile; infallible loops over SoA path state | hecs, files, rayon |
 //! | [`film`] | sums | statistics, tone mapping, writers | scenes |
 //! | [`render`] | world, settings | drives build → trace → film over tiles and frames | |
-//! | [`measure`] | images and references; subjects, rays and arms | error statistics, FLIP, heat maps; traversal timed and judged; what exactness costs | what error is too much |
+//! | [`measure`] | images and references; subjects, rays and arms; a world at other sizes and places | error statistics, FLIP, heat maps; traversal timed and judged; what exactness costs; what goes wrong first | what error is too much |
 //! | [`check`] | a `SceneDesc`, its world and store | warnings of what is probably not meant, all at once | pixels |
 //! | [`author`] | a mesh or a glTF file | a `SceneDesc`: turntable, convert | the world |
 //! | [`diag`] | | **data only**: a diagnostic | everything else |
@@ -87,6 +87,10 @@
 //! * Opacity is a stage of its own behind the kernels, which know nothing of it: a ray that passes a surface leaves it by
 //!   the hit's error bound and is traced again. Where a path last scattered is kept beside, so that densities stay those of
 //!   the scattering.
+//! * `stability` moves a scene by multiples of its own width, a power of two, since an authored unit may be a micrometre or
+//!   a kilometre; and it calls a picture wrong by its own noise, since a path that passes an edge by less than the last bit
+//!   may change sides.
+//! * Tracing records no bounces of samples that are not finite: the few that are listed are replayed.
 //! * `world::AuthoringIndex` is a pair, entity and node, since one entity of a scene may stand for a file's many.
 
 pub mod asset;

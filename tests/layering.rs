@@ -62,7 +62,7 @@ const RULES: &[Rule] = &[
         &[
             "render", "world", "build", "trace", "flat", "film", "scene", "asset", "math",
         ],
-        &["exr", "nix", "png", "thiserror"],
+        &["exr", "hecs", "nix", "png", "thiserror"],
     ),
     (
         "cli",
