@@ -288,11 +288,13 @@ impl Probe<'_> {
             Some(s) => (side > 0.0) != self.scene.spheres.inverted[s],
             None => true,
         };
+        // Bounds are along normals, of which the two hits have different ones.
+        let err = first.hits.err[i].max(second.hits.err[k]);
         let leaks = match sphere(from[0]) {
             Some(_) if outward => false,
-            Some(s) => self.leaves_sphere(s, first.hits.err[i], second, k),
+            Some(s) => self.leaves_sphere(s, err, second, k),
             None => {
-                self.leaves_part(from, first.hits.err[i], second, k, side)
+                self.leaves_part(from, err, second, k, side)
                     && self.is_inside(from, [first.hits.u[i], first.hits.v[i]], side)
             }
         };

@@ -2,7 +2,7 @@
 
 use super::super::{Difference, Report, Row};
 use super::power;
-use crate::math::ln;
+use crate::math::{ln, pow};
 use std::fmt::Write;
 
 /// Pixels: a panel, and what stands around it.
@@ -65,9 +65,13 @@ fn height(of_noise: f64) -> f64 {
 
 fn axis(body: &mut String) {
     for decade in DECADES[0]..=DECADES[1] {
-        let of_noise = crate::math::pow(10.0, f64::from(decade));
-        let y = height(of_noise) + 4.0;
-        text(body, [LEFT - 8.0, y], "a n", &format!("{of_noise}"));
+        let label = match decade {
+            0 => "1".to_owned(),
+            1 => "10".to_owned(),
+            _ => format!("1e{decade}"),
+        };
+        let y = height(pow(10.0, f64::from(decade))) + 4.0;
+        text(body, [LEFT - 8.0, y], "a n", &label);
     }
     text(body, [LEFT - 8.0, height(0.0) + 4.0], "a n", "same bits");
 }
@@ -99,42 +103,50 @@ fn panel(body: &mut String, left: f64, name: &str, rows: &[&Row], place: impl Fn
         "a n",
         "noise",
     );
-    let mut last = f64::NEG_INFINITY;
-    let mut order: Vec<usize> = (0..rows.len()).collect();
-    order.sort_by(|a, b| at[*a].total_cmp(&at[*b]));
-    for i in order {
-        let row = rows[i];
-        let x = left + 18.0 + (PANEL[0] - 36.0) * (at[i] - low) / span;
-        let y = height(row.picture.of_noise);
-        let wrong = row.is_wrong();
-        let color = if wrong { "#b3261e" } else { "#2f6db5" };
-        // Hollow: moved and scaled.
-        let both = row.placing.offset > 0.0 && row.placing.scale != 1.0;
-        let fill = if both { "#fff" } else { color };
-        let _ = write!(
-            body,
-            "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\" fill=\"{fill}\" stroke=\"{color}\" stroke-width=\"1.5\"/>"
-        );
-        let count = row.wrongs.total();
-        if count > 0 {
-            text(body, [x, y - 8.0], "m w", &count.to_string());
-        }
-        if x - last > 30.0 {
-            let tick = match row.placing.offset {
-                0.0 => row.placing.scale,
-                offset => offset,
-            };
-            let tick = if row.placing.offset == 0.0 && row.placing.scale == 1.0 {
-                "home".to_owned()
-            } else {
-                power(tick)
-            };
-            text(body, [x, TOP + PANEL[1] + SAME + 16.0], "m n", &tick);
-            last = x;
+    let mut ticks: Vec<(f64, String)> = Vec::new();
+    for (row, at) in rows.iter().zip(&at) {
+        let x = left + 18.0 + (PANEL[0] - 36.0) * (at - low) / span;
+        point(body, [x, height(row.picture.of_noise)], row);
+        ticks.push((x, tick(row)));
+    }
+    // Powers of ten come first where there is no room for all.
+    ticks.sort_by(|a, b| {
+        let binary = |tick: &(f64, String)| tick.1.starts_with("2^");
+        binary(a).cmp(&binary(b)).then(a.0.total_cmp(&b.0))
+    });
+    let mut told: Vec<f64> = Vec::new();
+    for (x, words) in ticks {
+        if told.iter().all(|other| (x - other).abs() > 24.0) {
+            text(body, [x, TOP + PANEL[1] + SAME + 16.0], "m n", &words);
+            told.push(x);
         }
     }
     let middle = left + 0.5 * PANEL[0];
     text(body, [middle, TOP + PANEL[1] + SAME + 34.0], "m", name);
+}
+
+/// What stands below a point.
+fn tick(row: &Row) -> String {
+    match (row.placing.scale, row.placing.offset) {
+        (1.0, 0.0) => "home".to_owned(),
+        (scale, 0.0) => power(scale),
+        (_, offset) => power(offset),
+    }
+}
+
+/// A row: red where something is wrong, hollow where it is both moved and scaled.
+fn point(body: &mut String, [x, y]: [f64; 2], row: &Row) {
+    let color = if row.is_wrong() { "#b3261e" } else { "#2f6db5" };
+    let both = row.placing.offset > 0.0 && row.placing.scale != 1.0;
+    let fill = if both { "#fff" } else { color };
+    let _ = write!(
+        body,
+        "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\" fill=\"{fill}\" stroke=\"{color}\" stroke-width=\"1.5\"/>"
+    );
+    let count = row.wrongs.total();
+    if count > 0 {
+        text(body, [x, y - 8.0], "m w", &count.to_string());
+    }
 }
 
 fn text(body: &mut String, [x, y]: [f64; 2], class: &str, words: &str) {
