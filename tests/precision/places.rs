@@ -14,6 +14,8 @@ struct Written {
     scale: f64,
     in_file: [f64; 3],
     shift: [f64; 3],
+    /// Irradiance by the sun.
+    sun: f64,
     seed: u64,
 }
 
@@ -21,6 +23,7 @@ const HOME: Written = Written {
     scale: 1.0,
     in_file: [0.0; 3],
     shift: [0.0; 3],
+    sun: 0.5,
     seed: 0,
 };
 
@@ -62,7 +65,7 @@ fn render(name: &str, w: Written, t: f64) -> TileSums {
             (light: Point(intensity: ({p:?}, {p:?}, {p:?})), transform: (translate: {f})),
             (light: Spot(intensity: ({q:?}, {q:?}, {p:?}), inner_deg: 20, outer_deg: 45),
                 transform: (translate: {g}, rotate: Euler(-60, 20, 0))),
-            (light: Sun(irradiance: (0.5, 0.4, 0.3)), transform: (rotate: Euler(-50, 10, 0))),
+            (light: Sun(irradiance: ({sun:?}, {sun:?}, {sun:?})), transform: (rotate: Euler(-50, 10, 0))),
         ]"#,
         eye = at([0.5, 0.25, 5.5]),
         target = at([0.0, -0.5, 0.0]),
@@ -83,6 +86,7 @@ fn render(name: &str, w: Written, t: f64) -> TileSums {
         q = bright(16.0),
         f = at([2.0, 2.0, 2.0]),
         g = at([-2.0, 3.0, 1.0]),
+        sun = w.sun,
     );
     let options = TraceOptions {
         max_bounces: 6,
@@ -165,18 +169,20 @@ fn other_places_change_next_to_nothing() {
     }
 }
 
-/// In decimal units every coordinate rounds otherwise: a few paths pass an edge on the other side, and the rest stays.
+/// In decimal units every coordinate rounds otherwise: a few paths pass an edge on the other side, and the rest stays. Not
+/// so with a sun, whose share of the light samples goes by how wide a scene is between powers of two.
 #[test]
 fn decimal_units_change_a_few_paths() {
-    let truth = render("decimal", HOME, 0.0);
-    let noise = relmse(&render("decimal", Written { seed: 1, ..HOME }, 0.0), &truth);
+    let home = Written { sun: 0.0, ..HOME };
+    let truth = render("decimal", home, 0.0);
+    let noise = relmse(&render("decimal", Written { seed: 1, ..home }, 0.0), &truth);
     for (name, scale) in [
         ("micrometres", 1e6),
         ("millimetres", 1e3),
         ("kilometres", 1e-3),
         ("megametres", 1e-6),
     ] {
-        let found = render("decimal", Written { scale, ..HOME }, 0.0);
+        let found = render("decimal", Written { scale, ..home }, 0.0);
         let changed =
             |(x, r): &(&[f64; 3], &[f64; 3])| (0..3).any(|k| (x[k] - r[k]).abs() > 1e-4 * r[k]);
         let pixels = found.rgb.iter().zip(&truth.rgb).filter(changed).count();

@@ -32,6 +32,9 @@ const GRAZING: usize = 8;
 /// How far off a triangle it is asked what is inside, in the square root of twice its area.
 const OFF: f64 = 1e-3;
 
+/// A part that is smaller than so many error bounds is blurred: so `luxel check` sees it, too.
+const BLURRED: f32 = 1000.0;
+
 /// What the probes found.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Findings {
@@ -288,6 +291,8 @@ impl Probe<'_> {
             Some(s) => (side > 0.0) != self.scene.spheres.inverted[s],
             None => true,
         };
+        let o = &second.rays.origin;
+        let origin = Vec3::new(o[0][k], o[1][k], o[2][k]);
         // Bounds are along normals, of which the two hits have different ones.
         let err = first.hits.err[i].max(second.hits.err[k]);
         let leaks = match sphere(from[0]) {
@@ -295,7 +300,7 @@ impl Probe<'_> {
             Some(s) => self.leaves_sphere(s, err, second, k),
             None => {
                 self.leaves_part(from, err, second, k, side)
-                    && self.is_inside(from, [first.hits.u[i], first.hits.v[i]], side)
+                    && self.starts_inside(from, [first.hits.u[i], first.hits.v[i]], err, origin)
             }
         };
         let wrongs = Wrongs {
@@ -353,30 +358,54 @@ impl Probe<'_> {
         (p - own.max).max(own.min - p).max_element() > slack
     }
 
-    /// Whether that side of a point of a triangle is inside in f64: where a part runs through itself, the outside may be
-    /// in. By the winding number a little off the triangle; asked of few rays.
-    fn is_inside(&self, [prim, instance]: [u32; 2], [u, v]: [f32; 2], side: f32) -> bool {
-        let geometry = match instance {
-            Hits::WORLD => &self.scene.world,
-            i => &self.scene.local[self.scene.instances[i as usize].geometry as usize],
-        };
+    /// Whether ray `k` starts inside, by winding numbers in f64; asked of few rays. Where a part runs through itself, what
+    /// is its inner side elsewhere may be outside: that is told by a point a little off the triangle. And beside an edge,
+    /// the ray's start may be rounded to beyond the neighbour's face: that counts only where rounding blurs the part.
+    fn starts_inside(
+        &self,
+        [prim, instance]: [u32; 2],
+        [u, v]: [f32; 2],
+        err: f32,
+        o: Vec3,
+    ) -> bool {
         let mesh = self.topology.mesh(self.scene, instance);
         let part = mesh.part[prim as usize];
+        let (geometry, start, own) = match instance {
+            Hits::WORLD => (
+                &self.scene.world,
+                o.as_dvec3(),
+                self.world_boxes[part as usize],
+            ),
+            i => {
+                let placed = &self.scene.instances[i as usize];
+                let start = placed.to_local.map(|row| {
+                    let [x, y, z, t] = row.map(f64::from);
+                    DVec3::new(x, y, z).dot(o.as_dvec3()) + t
+                });
+                let [min, max] = placed.bounds.map(Vec3::from);
+                let geometry = &*self.scene.local[placed.geometry as usize];
+                (geometry, DVec3::from(start), Aabb { min, max })
+            }
+        };
         let vertices = |prim: u32| {
             let v = spawn::triangle_vertices(&geometry.triangles, prim);
             v.map(|v| Vec3::from(v).as_dvec3())
         };
+        let inside = |p: DVec3| {
+            let of_part = (0..).zip(&mesh.part).filter(|(_, of)| **of == part);
+            let angle: f64 = of_part
+                .map(|(prim, _)| solid_angle(vertices(prim), p))
+                .sum();
+            (angle / (4.0 * PI)).abs() > 0.5
+        };
         let [a, b, c] = vertices(prim);
         let normal = (b - a).cross(c - a);
-        let size = normal.length();
-        if size == 0.0 {
-            return false;
-        }
-        let away = normal / size * (OFF * size.sqrt() * f64::from(side));
-        let p = a + (b - a) * f64::from(u) + (c - a) * f64::from(v) + away;
-        let own = (0..).zip(&mesh.part).filter(|(_, of)| **of == part);
-        let angle: f64 = own.map(|(prim, _)| solid_angle(vertices(prim), p)).sum();
-        (angle / (4.0 * PI)).abs() > 0.5
+        let area = normal.length();
+        let side = f64::from(mesh.inside[part as usize]);
+        let off = normal * (side * OFF / area.sqrt());
+        let beside = a + (b - a) * f64::from(u) + (c - a) * f64::from(v) + off;
+        let blurred = err * BLURRED > (own.max - own.min).max_element();
+        area > 0.0 && inside(beside) && (blurred || inside(start))
     }
 
     /// Random walks from the camera, on the side of the surfaces that they come to.
