@@ -25,7 +25,7 @@ const BOUNCE_0: &str = r#"Scene(
 )
 "#;
 
-/// A lamp in six boxes, one in the other, each of which multiplies radiance by 6400, since what is in it is thinner than
+/// A lamp in six boxes, one in the other, each of which multiplies radiance by 4096, since what is in it is thinner than
 /// what is around it. The filter sends all rays of a pixel through its middle: those of the middle pixel meet every box
 /// head on, and the others are reflected. Nothing of it is worth a warning.
 fn bounce_6() -> String {
@@ -41,7 +41,7 @@ fn bounce_6() -> String {
     version: 1,
     camera: (at: (0.25, 0.125, 20), look_at: (0.25, 0.125, 0), vfov_deg: 40),
     render: (size: (3, 3), spp: 2, max_bounces: 8, filter: Gaussian(radius_px: 1e-12)),
-    materials: {{ "thin": Glass(ior: 0.0125) }},
+    materials: {{ "thin": Glass(ior: 0.015625) }},
     entities: [
         {}
         (name: "lamp", shape: Mesh("cube.obj"), normals: Flat, emissive: (radiance: (1e18, 1e18, 1e18))),
