@@ -7,8 +7,8 @@
 //! - a **leak**: a ray that must hit and does not. Rays that are aimed at an edge that two triangles share, which lie on
 //!   both sides of the ray, must hit one of them (or something before it). Rays that start on the inner side of a closed
 //!   surface must not meet anything outside of its box before they meet the surface; closed is a solid sphere, and a
-//!   part of a mesh all of whose edges are shared. A start that rounding puts outside, beside an edge, is no leak unless
-//!   the whole part is smaller than a thousand roundings. Where the walks below never leave the scene at home, it is a closed
+//!   part of a mesh all of whose edges are shared. Starts beside an edge, within what rounding moves them by, are not
+//!   judged unless the whole part is smaller than a thousand such bounds. Where the walks below never leave the scene at home, it is a closed
 //!   room: then a walk that leaves it elsewhere is a leak.
 //! - a **self-hit**: a ray that leaves a surface by its error bound, as paths do, and hits the primitive that it left: the
 //!   same triangle, or from outside the same sphere. Probed from points all over every shape, to both sides, and on

@@ -291,8 +291,6 @@ impl Probe<'_> {
             Some(s) => (side > 0.0) != self.scene.spheres.inverted[s],
             None => true,
         };
-        let o = &second.rays.origin;
-        let origin = Vec3::new(o[0][k], o[1][k], o[2][k]);
         // Bounds are along normals, of which the two hits have different ones.
         let err = first.hits.err[i].max(second.hits.err[k]);
         let leaks = match sphere(from[0]) {
@@ -300,7 +298,7 @@ impl Probe<'_> {
             Some(s) => self.leaves_sphere(s, err, second, k),
             None => {
                 self.leaves_part(from, err, second, k, side)
-                    && self.starts_inside(from, [first.hits.u[i], first.hits.v[i]], err, origin)
+                    && self.starts_inside(from, [first.hits.u[i], first.hits.v[i]], err)
             }
         };
         let wrongs = Wrongs {
@@ -358,35 +356,26 @@ impl Probe<'_> {
         (p - own.max).max(own.min - p).max_element() > slack
     }
 
-    /// Whether ray `k` starts inside, by winding numbers in f64; asked of few rays. Where a part runs through itself, what
-    /// is its inner side elsewhere may be outside: that is told by a point a little off the triangle. And beside an edge,
-    /// the ray's start may be rounded to beyond the neighbour's face: that counts only where rounding blurs the part.
-    fn starts_inside(
-        &self,
-        [prim, instance]: [u32; 2],
-        [u, v]: [f32; 2],
-        err: f32,
-        o: Vec3,
-    ) -> bool {
+    /// Whether a ray that leaves this point to the inner side starts inside; asked of few rays. Where a part runs through
+    /// itself, what is its inner side elsewhere may be outside: that is told by the winding number in f64 a little off the
+    /// triangle. And beside an edge, rounding may put the start, or the ray, beyond the neighbour's face: that counts only
+    /// where rounding blurs the whole part.
+    fn starts_inside(&self, [prim, instance]: [u32; 2], [u, v]: [f32; 2], err: f32) -> bool {
         let mesh = self.topology.mesh(self.scene, instance);
         let part = mesh.part[prim as usize];
-        let (geometry, start, own) = match instance {
-            Hits::WORLD => (
-                &self.scene.world,
-                o.as_dvec3(),
-                self.world_boxes[part as usize],
-            ),
+        let (geometry, own) = match instance {
+            Hits::WORLD => (&self.scene.world, self.world_boxes[part as usize]),
             i => {
                 let placed = &self.scene.instances[i as usize];
-                let start = placed.to_local.map(|row| {
-                    let [x, y, z, t] = row.map(f64::from);
-                    DVec3::new(x, y, z).dot(o.as_dvec3()) + t
-                });
                 let [min, max] = placed.bounds.map(Vec3::from);
                 let geometry = &*self.scene.local[placed.geometry as usize];
-                (geometry, DVec3::from(start), Aabb { min, max })
+                (geometry, Aabb { min, max })
             }
         };
+        let blurred = err * BLURRED > (own.max - own.min).max_element();
+        if !blurred && self.beside_edge([prim, instance], [u, v], err) {
+            return false;
+        }
         let vertices = |prim: u32| {
             let v = spawn::triangle_vertices(&geometry.triangles, prim);
             v.map(|v| Vec3::from(v).as_dvec3())
@@ -404,8 +393,18 @@ impl Probe<'_> {
         let side = f64::from(mesh.inside[part as usize]);
         let off = normal * (side * OFF / area.sqrt());
         let beside = a + (b - a) * f64::from(u) + (c - a) * f64::from(v) + off;
-        let blurred = err * BLURRED > (own.max - own.min).max_element();
-        area > 0.0 && inside(beside) && (blurred || inside(start))
+        area > 0.0 && inside(beside)
+    }
+
+    /// Whether a point of a triangle is within so many error bounds of its edges.
+    fn beside_edge(&self, [prim, instance]: [u32; 2], [u, v]: [f32; 2], err: f32) -> bool {
+        let p = self.vertices(prim, instance);
+        let area = (p[1] - p[0]).cross(p[2] - p[0]).length();
+        let weights = [1.0 - u - v, u, v].map(f64::from);
+        (0..3).any(|k| {
+            let edge = p[(k + 2) % 3] - p[(k + 1) % 3];
+            weights[k] * area < f64::from(BOUNDS * err) * edge.length()
+        })
     }
 
     /// Random walks from the camera, on the side of the surfaces that they come to.

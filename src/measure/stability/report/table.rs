@@ -95,14 +95,18 @@ fn what(row: &Row, entity: u32) -> String {
         non_finite,
     } = own.map_or(row.wrongs, |(_, wrongs)| *wrongs);
     let counts = [
-        (leaks, "leaks"),
-        (self_hits, "self-hits"),
-        (non_finite, "samples that are not finite"),
+        (leaks, "leak", "leaks"),
+        (self_hits, "self-hit", "self-hits"),
+        (
+            non_finite,
+            "sample that is not finite",
+            "samples that are not finite",
+        ),
     ];
     let mut all: Vec<String> = counts
         .iter()
-        .filter(|(count, _)| *count > 0)
-        .map(|(count, what)| format!("{count} {what}"))
+        .filter(|(count, ..)| *count > 0)
+        .map(|(count, one, more)| format!("{count} {}", if *count == 1 { one } else { more }))
         .collect();
     if row.picture.is_wrong() {
         let share = row.picture.of_noise;
