@@ -1,27 +1,14 @@
 //! t against f64.
 
-use crate::support::{Parts, Rng};
+use crate::support::{Parts, Rng, exact};
 use crate::{best, ray, soup};
 use luxel::build::bvh::Accel;
 use luxel::math::{DVec3, Vec3};
 use luxel::trace::kernels::t_error_bound;
 use luxel::trace::{Hits, Rays};
 
-/// Möller–Trumbore in f64, no box, no tree.
-fn oracle(v: [Vec3; 3], [o, d]: [[f32; 3]; 2]) -> Option<[f64; 3]> {
-    let [v0, v1, v2] = v.map(|v| v.as_dvec3());
-    let [o, d] = [o, d].map(|x| DVec3::from(x.map(f64::from)));
-    let (e1, e2) = (v1 - v0, v2 - v0);
-    let p = d.cross(e2);
-    let det = e1.dot(p);
-    let s = o - v0;
-    let q = s.cross(e1);
-    let [t, u, v] = [e2.dot(q) / det, s.dot(p) / det, d.dot(q) / det];
-    Some([t, u, v])
-}
-
 fn oracle_hit(v: [Vec3; 3], r: [[f32; 3]; 2], slack: f64) -> Option<f64> {
-    let [t, u, v] = oracle(v, r)?;
+    let [t, u, v] = exact::triangle(v, r);
     (t > 0.0 && u >= -slack && v >= -slack && u + v <= 1.0 + slack).then_some(t)
 }
 

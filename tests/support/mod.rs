@@ -1,7 +1,19 @@
 //! Scenes for the kernels, made without files or worlds, and a small random generator.
-#![allow(dead_code, unreachable_pub, reason = "each test binary uses its part")]
+#![allow(
+    dead_code,
+    unreachable_pub,
+    unused_imports,
+    reason = "each test binary uses its part"
+)]
 
-use luxel::build::bvh::{Accel, Primitives, SphereItem, build, sphere_blocks};
+pub mod exact;
+pub mod leave;
+pub mod shoot;
+pub mod solid;
+
+pub use solid::Solid;
+
+use luxel::build::bvh::{Accel, Primitives, Quality, SphereItem, build, build_with, sphere_blocks};
 use luxel::flat::{
     Camera, FlatScene, Geometry, Instance, Lights, Needs, ObjectId, PixelFilter, Rebase, Shading,
     Spheres,
@@ -78,6 +90,11 @@ impl Parts {
     }
 
     pub fn scene(&self, accel: Accel) -> FlatScene {
+        self.scene_by(accel, Quality::Good)
+    }
+
+    /// With trees of that quality.
+    pub fn scene_by(&self, accel: Accel, quality: Quality) -> FlatScene {
         let items = |from: &[([f64; 3], f64)], first: usize| -> Vec<SphereItem> {
             let item = |(i, &(center, radius)): (usize, &([f64; 3], f64))| SphereItem {
                 center,
@@ -96,7 +113,7 @@ impl Parts {
                     triangles: m,
                     ..Primitives::default()
                 };
-                let built = build(&p, accel);
+                let built = build_with(&p, accel, quality);
                 Arc::new(Geometry {
                     triangles: built.triangles,
                     bvh: built.bvh,
@@ -122,7 +139,7 @@ impl Parts {
             spheres: &in_tree,
             instances: &boxes,
         };
-        let built = build(&primitives, accel);
+        let built = build_with(&primitives, accel, quality);
         let all: Vec<SphereItem> = looped.iter().chain(&in_tree).copied().collect();
         FlatScene {
             world: Geometry {
@@ -212,103 +229,5 @@ pub fn empty_scene() -> FlatScene {
         },
         needs: Needs::default(),
         frame: 0,
-    }
-}
-
-/// A closed mesh with shared vertices.
-#[derive(Clone)]
-pub struct Solid {
-    pub vertices: Vec<Vec3>,
-    pub faces: Vec<[usize; 3]>,
-}
-
-impl Solid {
-    pub fn triangles(&self) -> Vec<[Vec3; 3]> {
-        self.faces
-            .iter()
-            .map(|f| f.map(|i| self.vertices[i]))
-            .collect()
-    }
-
-    /// A sphere in `n` rows of `m` columns; the poles have valence `m`.
-    pub fn uv_sphere(n: usize, m: usize) -> Solid {
-        let pi = std::f64::consts::PI;
-        let mut vertices = vec![Vec3::Y];
-        for i in 1..n {
-            let theta = pi * i as f64 / n as f64;
-            for j in 0..m {
-                let phi = 2.0 * pi * j as f64 / m as f64;
-                let p = DVec3::new(
-                    theta.sin() * phi.cos(),
-                    theta.cos(),
-                    theta.sin() * phi.sin(),
-                );
-                vertices.push(p.as_vec3());
-            }
-        }
-        vertices.push(-Vec3::Y);
-        let at = |i: usize, j: usize| match i {
-            0 => 0,
-            i if i == n => 1 + (n - 1) * m,
-            i => 1 + (i - 1) * m + j % m,
-        };
-        let mut faces = Vec::new();
-        for i in 0..n {
-            for j in 0..m {
-                let quad = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
-                if i > 0 {
-                    faces.push([quad[0], quad[1], quad[2]]);
-                }
-                if i + 1 < n {
-                    faces.push([quad[0], quad[2], quad[3]]);
-                }
-            }
-        }
-        Solid { vertices, faces }
-    }
-
-    /// An icosahedron subdivided `levels` times.
-    pub fn icosphere(levels: u32) -> Solid {
-        let g = (1.0 + 5f64.sqrt()) / 2.0;
-        let mut points: Vec<DVec3> = Vec::new();
-        for (a, b) in [(1.0, g), (-1.0, g), (1.0, -g), (-1.0, -g)] {
-            points.push(DVec3::new(0.0, a, b).normalize());
-            points.push(DVec3::new(a, b, 0.0).normalize());
-            points.push(DVec3::new(b, 0.0, a).normalize());
-        }
-        let side = points[1..]
-            .iter()
-            .map(|p| p.distance(points[0]))
-            .fold(f64::INFINITY, f64::min);
-        let near = |a: usize, b: usize| points[a].distance(points[b]) < side * 1.01;
-        let mut faces = Vec::new();
-        for a in 0..12 {
-            for b in a + 1..12 {
-                for c in b + 1..12 {
-                    if near(a, b) && near(b, c) && near(a, c) {
-                        faces.push([a, b, c]);
-                    }
-                }
-            }
-        }
-        for _ in 0..levels {
-            let mut middles = std::collections::BTreeMap::new();
-            let mut next = Vec::new();
-            for f in &faces {
-                let mut middle = |a: usize, b: usize| {
-                    *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
-                        points.push((points[a] + points[b]).normalize());
-                        points.len() - 1
-                    })
-                };
-                let [x, y, z] = [middle(f[0], f[1]), middle(f[1], f[2]), middle(f[2], f[0])];
-                next.extend([[f[0], x, z], [x, f[1], y], [z, y, f[2]], [x, y, z]]);
-            }
-            faces = next;
-        }
-        Solid {
-            vertices: points.iter().map(|p| p.as_vec3()).collect(),
-            faces,
-        }
     }
 }
