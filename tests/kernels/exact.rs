@@ -1,7 +1,7 @@
 //! t against f64.
 
 use crate::support::{Parts, Rng, exact};
-use crate::{best, ray, soup};
+use crate::{EVERY, best, ray, soup};
 use luxel::build::bvh::Accel;
 use luxel::math::{DVec3, Vec3};
 use luxel::trace::kernels::t_error_bound;
@@ -151,4 +151,27 @@ fn residual(c: [f64; 3], r: f64, o: [f32; 3]) -> f64 {
             o[a] * o[a] - 2.0 * o[a] * c[a] + own
         })
         .sum()
+}
+
+#[test]
+fn triangles_that_reach_to_infinity_are_never_hit() {
+    let far = Vec3::new(0.0, f32::NEG_INFINITY, 0.0);
+    let mut triangles = vec![[Vec3::ZERO, Vec3::X, far], [far, Vec3::NEG_X, Vec3::ZERO]];
+    // In one block with them, so that they are tested.
+    triangles.push([Vec3::Z, Vec3::X, Vec3::Y]);
+    let mut rng = Rng(17);
+    let mut rays = Rays::default();
+    for _ in 0..2000 {
+        let target = Vec3::new(rng.range(-1.0, 1.0) as f32, -rng.unit() as f32, 0.0);
+        let origin = Vec3::from(rng.in_cube(2.0));
+        rays.push(origin.to_array(), (target - origin).to_array(), f32::MAX);
+    }
+    for accel in EVERY {
+        let hits = best(&Parts::of(triangles.clone()).scene(accel), &rays);
+        assert!(
+            hits.prim.iter().all(|&p| p == 2 || p == Hits::NONE),
+            "{accel:?}"
+        );
+        assert!(hits.err.iter().all(|err| err.is_finite()), "{accel:?}");
+    }
 }

@@ -67,7 +67,7 @@ pub(super) fn triangle_block(
             let prim = prim(lane);
             block.prim[lane] = prim;
             place[prim as usize].store((BLOCK * at + lane) as u32, Ordering::Relaxed);
-            triangles[prim as usize]
+            finite_or_nan(triangles[prim as usize])
         } else {
             [Vec3::NAN; 3]
         };
@@ -78,6 +78,16 @@ pub(super) fn triangle_block(
         }
     }
     block
+}
+
+/// A triangle whose corners are not all finite as one that no ray hits: infinite ones a ray might.
+fn finite_or_nan(v: [Vec3; 3]) -> [Vec3; 3] {
+    // Zero times what is not finite is not a number.
+    if (v[0] * 0.0 + v[1] * 0.0 + v[2] * 0.0) == Vec3::ZERO {
+        v
+    } else {
+        [Vec3::NAN; 3]
+    }
 }
 
 /// A block of so many spheres as there are lanes, or fewer.

@@ -6,8 +6,9 @@
 //!   no ancestor culls a hit (`ray`, `triangle`, `walk`).
 //! - Looped spheres are tested before the tree, without a box; which spheres they are is part of the scene.
 //! - An instance is entered by rays that meet its own box; its hits are not nearer than that box.
-//! - Rays with anything not finite, without direction, or without a positive `t_max` hit nothing. Degenerate triangles are
-//!   never hit.
+//! - Rays with anything not finite, without direction, or without a positive `t_max` hit nothing. Triangles with two equal
+//!   corners or anything not finite are never hit. Those whose corners lie in a line are by rays that come so near that
+//!   only rounding tells: else meshes that are closed by such would have cracks.
 //!
 //! A batch goes through the tree in up to three ways, which `group` chooses: rays that go one way from one place as packets,
 //! eight rays against one box or primitive (`packet`); the others each by itself, one ray against eight boxes or primitives
