@@ -217,3 +217,23 @@ fn rays_at_the_rim_of_a_surface_may_miss() {
         Verdict::Wrong
     );
 }
+
+#[test]
+fn what_underflow_hides_is_doubtful() {
+    // The upper edge lies at z = 2, and the ray passes it by 1.4e-45, which no product in f32 tells from nothing.
+    let triangles = [[
+        Vec3::new(3.0, 5.0, 2.0),
+        Vec3::new(3.0, 4.0, 2.0),
+        Vec3::new(3.0, 2.0, -1.0),
+    ]];
+    let referee = Referee::new(Primitives {
+        triangles: &triangles,
+        ..Primitives::default()
+    });
+    let ray = [[4.0, 5.0, 2.0], [-1.0, -0.5, 1e-45]];
+    let traced = referee.trace(ray, f32::MAX);
+    assert_eq!(traced.exact(), None);
+    assert_eq!(traced.judge(None), Verdict::Agrees);
+    let hit = Found { t: 1.0, prim: 0 };
+    assert_eq!(traced.judge(Some(hit)), Verdict::Edge);
+}

@@ -7,6 +7,9 @@ use crate::math::{DVec3, Vec3};
 /// Unit roundoff of f32.
 const U: f64 = 1.0 / (1u64 << 24) as f64;
 
+/// What f32 rounds to where numbers end: a product or a quotient that underflows is off by so much at most.
+const LEAST: f64 = f32::MIN_POSITIVE as f64 * f32::EPSILON as f64;
+
 /// Bound on the relative error of `n` f32 roundings (Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, §3.1).
 const fn gamma(n: u32) -> f64 {
     n as f64 * U / (1.0 - n as f64 * U)
@@ -89,11 +92,13 @@ struct Sheared {
 }
 
 impl Sheared {
-    /// `fl(fl(v − o) + fl(fl(−d / d[kz]) · fl(v[kz] − o[kz])))`: two roundings of the first term, four of the second.
+    /// `fl(fl(v − o) + fl(fl(−d / d[kz]) · fl(v[kz] − o[kz])))`: two roundings of the first term, four of the second,
+    /// and the quotient and the product may underflow.
     fn new(v: DVec3, d: DVec3, kz: usize) -> Sheared {
         let sheared = |axis: usize| {
             let along = -d[axis] / d[kz] * v[kz];
-            let error = gamma(2) * v[axis].abs() + gamma(4) * along.abs();
+            let rounding = gamma(2) * v[axis].abs() + gamma(4) * along.abs();
+            let error = rounding + LEAST * (1.0 + v[kz].abs());
             (v[axis] + along, error)
         };
         let [x, y] = [sheared((kz + 1) % 3), sheared((kz + 2) % 3)];
@@ -113,7 +118,7 @@ fn edge_doubt(b: &Sheared, c: &Sheared) -> f64 {
     let product = |i: usize, j: usize| {
         let exact = (b.p[i] * c.p[j]).abs();
         let most = (b.p[i].abs() + b.error[i]) * (c.p[j].abs() + c.error[j]);
-        most - exact + gamma(2) * most
+        most - exact + gamma(2) * most + LEAST
     };
     product(0, 1) + product(1, 0)
 }
