@@ -148,6 +148,42 @@ mod tests {
         }
     }
 
+    /// Neither 0 nor 1 for any hash, so that no map from the square meets its border; and every half, quarter … 2⁻¹² of the
+    /// interval holds as many numbers as another.
+    #[test]
+    fn numbers_are_inside_and_evenly_spread() {
+        assert!(unit(0) > 0.0 && unit(u32::MAX) < 1.0);
+        let mut last = 0.0;
+        for k in 0..1u32 << 23 {
+            let u = unit(k << 9 | k & 0x1ff);
+            assert!(u > last && u < 1.0, "{k}");
+            last = u;
+        }
+        const CELLS: usize = 1 << 12;
+        let n = 1u32 << 20;
+        for sampler in [Sampler::Independent, Sampler::Sobol] {
+            for pair in [Pair::Pixel, Pair::Light(3), Pair::Roulette(900)] {
+                let mut counts = [[0u32; CELLS]; 2];
+                for s in 0..n {
+                    let numbers = sample_pair(sampler, pixel_key(5, 6, 7, 8), s, pair);
+                    for (counts, u) in counts.iter_mut().zip(numbers) {
+                        counts[(u * CELLS as f32) as usize] += 1;
+                    }
+                }
+                let mean = f64::from(n) / CELLS as f64;
+                for counts in counts {
+                    let chi2: f64 = counts
+                        .iter()
+                        .map(|&c| (f64::from(c) - mean).powi(2) / mean)
+                        .sum();
+                    // Four standard deviations of χ² with 4095 degrees of freedom; Sobol points are evener than chance.
+                    let limit = (CELLS - 1) as f64 + 4.0 * (2.0 * (CELLS - 1) as f64).sqrt();
+                    assert!(chi2 < limit, "{sampler:?} {pair:?}: {chi2}");
+                }
+            }
+        }
+    }
+
     /// Every elementary interval of area 2⁻ᵐ holds exactly one of 2ᵐ consecutive aligned samples, for each pair.
     #[test]
     fn elementary_intervals_hold_one_point() {

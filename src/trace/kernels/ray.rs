@@ -330,3 +330,81 @@ pub(super) fn dot<L: Lanes>(a: [L; 3], b: [L; 3]) -> L {
 pub(super) fn splat<L: Lanes>(x: [f32; 3]) -> [L; 3] {
     [L::splat(x[0]), L::splat(x[1]), L::splat(x[2])]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whole numbers that differ from run to run of a generator (Marsaglia 2003, xorshift).
+    struct Numbers(u64);
+
+    impl Numbers {
+        fn below(&mut self, n: u64) -> u64 {
+            self.0 ^= self.0 << 13;
+            self.0 ^= self.0 >> 7;
+            self.0 ^= self.0 << 17;
+            self.0 % n
+        }
+
+        fn range(&mut self, low: f32, high: f32) -> f32 {
+            low + (high - low) * self.below(1 << 24) as f32 / (1 << 24) as f32
+        }
+    }
+
+    /// Rays that start in a corner, an edge or a face of a box, or are aimed at one by steps that are exact: all meet the
+    /// box, and the point is in the interval.
+    #[test]
+    fn boxes_are_met_at_their_corners() {
+        let mut numbers = Numbers(0x2545_f491_4f6c_dd1d);
+        let mut flat = 0;
+        for case in 0..1_000_000u32 {
+            let scale = 2f32.powi(numbers.below(41) as i32 - 20);
+            let away = [0.0, 1e3, 1e5, 1e6, 1e7][case as usize % 5] * scale;
+            let [mut min, mut max, mut point] = [[0.0f32; 3]; 3];
+            for axis in 0..3 {
+                let a = away + numbers.range(-1.0, 1.0) * scale;
+                let b = away + numbers.range(-1.0, 1.0) * scale;
+                [min[axis], max[axis]] = [a.min(b), a.max(b)];
+                if numbers.below(8) == 0 {
+                    max[axis] = min[axis];
+                    flat += 1;
+                }
+                point[axis] = match numbers.below(3) {
+                    0 => min[axis],
+                    1 => max[axis],
+                    _ => (0.5 * min[axis] + 0.5 * max[axis]).clamp(min[axis], max[axis]),
+                };
+            }
+            // Origins from which a step of a whole number of directions leads to the point to the bit, where f32 holds them.
+            let steps = [0.0, 1.0, 3.0, 1024.0][numbers.below(4) as usize];
+            let small = [-3.0f32, -1.0, -0.0, 0.0, 1.0, 2.0, 7.0, 1e-20];
+            let dir = [(); 3].map(|()| small[numbers.below(8) as usize] * scale);
+            let mut origin = [0.0; 3];
+            for axis in 0..3 {
+                origin[axis] = point[axis] - steps * dir[axis];
+            }
+            let exact = (0..3).all(|axis| {
+                let [o, step] = [origin[axis], steps * dir[axis]].map(f64::from);
+                let there = o + step;
+                let rounded = there - o != step || there - step != o;
+                !rounded && there >= f64::from(min[axis]) && there <= f64::from(max[axis])
+            });
+            let Some(ray) = WalkRay::<f32>::new(origin, dir).filter(|_| exact) else {
+                continue;
+            };
+            let met = ray.box_of(min, max);
+            assert!(
+                met.near <= steps && steps <= met.far,
+                "case {case}: {origin:?} {dir:?} {min:?} {max:?}"
+            );
+            let planes: [[f32; BLOCK]; 6] =
+                [min[0], min[1], min[2], max[0], max[1], max[2]].map(|x| [x; BLOCK]);
+            let same = ray.slabs(&planes, 0);
+            assert!(
+                same.near.to_bits() == met.near.to_bits()
+                    && same.far.to_bits() == met.far.to_bits()
+            );
+        }
+        assert!(flat > 100_000);
+    }
+}
