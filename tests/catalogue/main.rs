@@ -16,5 +16,7 @@ mod a_leaving;
 mod a_triangles;
 mod b_spheres;
 mod book;
+mod d_trees;
+mod scenes;
 #[path = "../support/mod.rs"]
 mod support;
