@@ -147,6 +147,9 @@ fn a7_grazing(trials: u64) -> Outcome {
             edge += u64::from(verdict == Verdict::Edge);
             let outside = hits.prim[i] != Hits::NONE && !in_box(&v, r, hits.t[i]);
             let failed = verdict == Verdict::Wrong || outside;
+            if failed {
+                println!("{verdict:?}, t {}: {v:?} {r:?}", hits.t[i]);
+            }
             outcome.add(Outcome::new(1, usize::from(failed)));
         }
     }
