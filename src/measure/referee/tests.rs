@@ -237,3 +237,33 @@ fn what_underflow_hides_is_doubtful() {
     let hit = Found { t: 1.0, prim: 0 };
     assert_eq!(traced.judge(Some(hit)), Verdict::Edge);
 }
+
+#[test]
+fn a_plane_behind_a_doubtful_triangle_in_front_is_an_edge() {
+    // The ray runs almost in the plane of a sliver whose box begins at t = 0.39, past one of its edges by less than
+    // rounding; the plane itself it meets at t = -0.38.
+    let triangles = [[
+        Vec3::new(-0.565_630_85, -0.031_785_64, -0.291_039_02),
+        Vec3::new(-0.427_824_14, 0.927_742_96, -0.536_628_37),
+        Vec3::new(-0.549_600_3, 0.079_328_38, -0.319_664_57),
+    ]];
+    let primitives = Primitives {
+        triangles: &triangles,
+        ..Primitives::default()
+    };
+    let referee = Referee::new(primitives);
+    let ray = [
+        [-0.341_192_25, 0.208_238_2, -0.840_586_9],
+        [-0.221_288_8, 0.726_348_3, 0.650_729_9],
+    ];
+    let traced = referee.trace(ray, f32::MAX);
+    assert_eq!(traced.exact(), None);
+    let hit = Found {
+        t: 0.601_226_57,
+        prim: 0,
+    };
+    assert_eq!(traced.judge(Some(hit)), Verdict::Edge);
+    // Beyond its bound it stays wrong.
+    let beyond = Found { t: 2.0, ..hit };
+    assert_eq!(traced.judge(Some(beyond)), Verdict::Wrong);
+}

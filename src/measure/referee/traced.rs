@@ -61,7 +61,9 @@ impl Traced<'_> {
                 let own = self.referee.meet(hit.prim, &self.line);
                 let t = f64::from(hit.t);
                 let bound = self.t_bound(hit.prim, own.t);
-                let counts = own.certainty != Certainty::Missed && own.t > 0.0;
+                // Of a doubtful one, which the line may pass, the plane may be met behind the origin.
+                let doubtful = own.certainty == Certainty::Doubtful;
+                let counts = own.certainty != Certainty::Missed && (own.t > 0.0 || doubtful);
                 if !counts || hit.t > self.t_max || (t - own.t).abs() > bound {
                     return Verdict::Wrong;
                 }
