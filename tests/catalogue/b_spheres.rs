@@ -17,7 +17,7 @@ items! {
     b4_grazing(2e5, 1e7): "B4", "rays that pass a centre at r (1 ± 2^-k), k = 1 to 24: wrong by the f64 referee, or NaN";
     b5_leaving(2e5, 1e7): "B5", "rays that leave spheres of r = 1e-4 to 1e8 outward: they meet it again; inward: the far side off by more than 4 ulp";
     b6_nested(6e4, 6e6): "B6", "eight nested shells, gaps of 1e-2 to 5e-7: the sixteen crossings out of order";
-    b8_normals(1e5, 1e7): "B8", "normals: length off by more than 2 ulp, or angle by more than 4 ε (1 + |C| / r)";
+    b8_normals(1e5, 1e7): "B8", "normals: length off by more than 2 ulp, or angle by more than 4 ε (1 + distance / r)";
 }
 
 const EPS: f64 = f32::EPSILON as f64;

@@ -47,7 +47,10 @@ fn h1_sums(trials: u64) -> Outcome {
         let failures = if off > 1e-12 { n } else { 0 };
         outcome.add(Outcome::new(n as usize, failures as usize));
     }
-    outcome.saying(format!("within {worst:.1e}"))
+    outcome.saying(match worst {
+        0.0 => "exact".to_string(),
+        _ => format!("within {worst:.1e}"),
+    })
 }
 
 /// Scenes that come with luxel, their pictures small.
