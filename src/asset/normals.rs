@@ -240,6 +240,31 @@ mod tests {
         }
     }
 
+    /// A low pyramid, smooth all around, with one of its four sides cut in two.
+    #[test]
+    fn cutting_a_face_of_a_smooth_place_changes_no_normal() {
+        let pyramid = mesh(
+            &[
+                [0.0, 0.0, 0.1],
+                [1.0, 1.0, 0.0],
+                [-1.0, 1.0, 0.0],
+                [-1.0, -1.0, 0.0],
+                [1.0, -1.0, 0.0],
+                [1.0, 0.25, 0.0],
+            ],
+            &[0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 5, 0, 5, 1],
+        );
+        for angle in [60.0, 5.0] {
+            let normals = all(&pyramid, angle);
+            let straight = |k: usize| normals[3 * k].distance(DVec3::Z) < 1e-15;
+            assert_eq!(
+                (0..5).all(straight),
+                angle == 60.0,
+                "within {angle} degrees"
+            );
+        }
+    }
+
     #[test]
     fn positions_that_are_equal_share_their_normals_whatever_their_index() {
         let joined = cube();

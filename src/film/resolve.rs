@@ -64,15 +64,16 @@ mod tests {
     use super::super::{Planes, Window};
     use super::*;
 
+    const PIXEL: Window = Window {
+        x: 0,
+        y: 0,
+        width: 1,
+        height: 1,
+    };
+
     fn film(samples: &[f64]) -> Film {
         let n = u32::try_from(samples.len()).expect("few");
         let mut film = Film::new(1, 1);
-        let window = Window {
-            x: 0,
-            y: 0,
-            width: 1,
-            height: 1,
-        };
         let planes = Planes {
             rgb: vec![[samples.iter().sum(); 3]],
             rgb_squared: vec![[samples.iter().map(|x| x * x).sum(); 3]],
@@ -81,7 +82,7 @@ mod tests {
             depth: vec![0.0],
             ..Planes::default()
         };
-        film.put(window, &planes);
+        film.put(PIXEL, &planes);
         film
     }
 
@@ -94,6 +95,20 @@ mod tests {
             film(&samples).standard_error()[0],
             [(38.0f64 / 12.0).sqrt() as f32; 3]
         );
+    }
+
+    /// At a rim, where some samples hit nothing, the features are those of what is hit.
+    #[test]
+    fn features_are_means_over_the_samples_that_hit() {
+        let mut film = film(&[1.0, 2.0, 4.0, 9.0]);
+        let two_of_them = Planes {
+            hit_count: vec![2],
+            depth: vec![10.0],
+            ..Planes::default()
+        };
+        film.put(PIXEL, &two_of_them);
+        assert_eq!(film.depth(), [5.0]);
+        assert_eq!(film.feature(&[[1.0, 0.5, -2.0]]), [[0.5, 0.25, -1.0]]);
     }
 
     #[test]

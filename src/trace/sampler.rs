@@ -210,6 +210,27 @@ mod tests {
         }
     }
 
+    /// No two uses share a row of the table: numbers that decide two things tie them together.
+    #[test]
+    fn every_use_has_a_row_of_its_own() {
+        let bounces = (0..64).flat_map(|b| {
+            [
+                Pair::Choice(b),
+                Pair::Light(b),
+                Pair::Direction(b),
+                Pair::Roulette(b),
+                Pair::Opacity(b, 0),
+                Pair::Opacity(b, MAX_PASSES - 1),
+            ]
+        });
+        let uses = [Pair::Pixel, Pair::Lens].into_iter().chain(bounces);
+        let mut rows: Vec<(u32, Pair)> = uses.map(|pair| (pair.row(), pair)).collect();
+        rows.sort_by_key(|(row, _)| *row);
+        for two in rows.windows(2) {
+            assert!(two[0].0 != two[1].0, "{:?} and {:?}", two[0].1, two[1].1);
+        }
+    }
+
     #[test]
     fn pairs_pixels_and_seeds_are_uncorrelated() {
         let n = 1u32 << 14;

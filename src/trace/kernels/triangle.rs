@@ -280,3 +280,63 @@ pub fn t_error_bound(vertices: [[f32; 3]; 3], origin: [f32; 3], dir: [f32; 3]) -
         });
     first.min((high - low) + gamma(5) * largest(z))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rays at edges and corners, where rounding moves t out of the box most often. The same holds for boxes of nodes, which
+    /// contain it: so that no tree can cull what another finds.
+    #[test]
+    fn t_lies_in_the_interval_of_its_own_box() {
+        let mut state = 1u64;
+        let mut unit = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as f32 / 8_388_608.0 - 1.0
+        };
+        let (mut hits, mut clamped) = (0, 0);
+        for case in 0..300_000i32 {
+            let mut block = TriangleBlock {
+                v: [[[0.0; BLOCK]; 3]; 3],
+                prim: [0; BLOCK],
+            };
+            for lanes in block.v.as_flattened_mut() {
+                *lanes = [unit(); BLOCK];
+            }
+            // An edge in a side of the box, which the ray nearly lies in.
+            let side = case as usize % 3;
+            block.v[1][side] = block.v[0][side];
+            let corners = FromLane(&block, 0);
+            let [a, b, _] = Corners::<f32>::vertices(&corners, 0);
+            let along = if case % 2 == 0 { 0.0 } else { unit().abs() };
+            let [mut origin, mut dir] = [[0.0; 3]; 2];
+            for axis in 0..3 {
+                origin[axis] = match axis == side {
+                    true => a[axis] + unit() * 0.1f32.powi(4 + case % 4),
+                    false => 4.0 * unit(),
+                };
+                dir[axis] = a[axis] + along * (b[axis] - a[axis]) - origin[axis];
+            }
+            let ray = WalkRay::<f32>::new(origin, dir).expect("a ray");
+            let mut found = Candidates::NONE;
+            if test(&ray, &corners, 0, [0.0, f32::MAX], &mut found) == 0 {
+                continue;
+            }
+            let own = own_box(&ray, &corners);
+            let t = found.t[0];
+            assert!(own.near <= t && t <= own.far, "{origin:?} {dir:?}: {t}");
+            let sheared = Sheared::new(&ray, &corners);
+            let Edges { e, det } = sheared.edges();
+            let z = sheared.p.map(|p| p[2] * ray.shear[2]);
+            let raw = (e[0] * z[0] + e[1] * z[1] + e[2] * z[2]) / det;
+            hits += 1;
+            clamped += usize::from(raw < own.near || own.far < raw);
+        }
+        assert!(
+            hits > 100_000 && clamped > 0,
+            "{clamped} of {hits} were clamped"
+        );
+    }
+}
