@@ -325,6 +325,25 @@ fn walls_do_not_widen_the_scene() {
     assert_eq!(only.rebase.scale, 1.0 / 268_435_456.0);
 }
 
+/// A wall is as large as its radius, and what stands on it feels the last bits of where its centre is.
+#[test]
+fn centres_of_walls_keep_the_bits_of_f64() {
+    for center in [-1e3 / 3.0, -1e6 / 3.0, 1e8 / 7.0] {
+        let built = build(&scene(&format!(
+            "(shape: Sphere(radius: 1)), (shape: Sphere(radius: {center:?}), transform: (translate: (0.1, {center:?}, 0)))"
+        ).replace("radius: -", "radius: ")));
+        let Rebase { origin, scale } = built.rebase;
+        for (axis, authored) in [0.1, center, 0.0].into_iter().enumerate() {
+            let want = (authored - origin[axis]) * scale;
+            let error = (built.spheres.center[1][axis] - want).abs();
+            assert!(
+                error <= 4e-16 * want.abs(),
+                "{center}: {error} on axis {axis}"
+            );
+        }
+    }
+}
+
 /// Triangles of the scene in scene units, from wherever they are stored, with the object they belong to.
 fn triangles(scene: &FlatScene) -> Vec<(u32, [Vec3; 3])> {
     let vertices = |g: &luxel::flat::Geometry, prim: usize| {

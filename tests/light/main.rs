@@ -8,6 +8,8 @@ mod reference;
 
 mod acne;
 mod agreement;
+mod boxes;
+mod channels;
 mod closed;
 mod estimators;
 mod files;
@@ -21,6 +23,7 @@ mod peers;
 mod punctual;
 mod radiance;
 mod self_check;
+mod shadows;
 mod stats;
 mod textures;
 mod veils;
