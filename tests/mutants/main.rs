@@ -25,13 +25,14 @@ const HEAD: &str = "\
 # Planted bugs
 
 A test that cannot fail tests nothing. Each line is a bug that a patch beside this file plants in a copy of the tree, and the
-tests that turned red. Written by
+tests that turn red.
 
 ```sh
 cargo test --release --test mutants -- --ignored --nocapture
 ```
 
-which fails if a bug goes unseen. Pictures compared to the bit (`tests/golden.rs`) notice every one of them and are not asked.
+plants them one after the other, fails if one goes unseen, and writes this table. Pictures compared to the bit
+(`tests/golden.rs`) would notice nearly every one of them, and are not asked.
 
 | bug | in | what it breaks | caught by |
 |---|---|---|---|
@@ -75,6 +76,20 @@ fn every_bug_can_be_planted() {
         .filter_map(|patch| patch.planted(root()).err())
         .collect();
     assert!(errors.is_empty(), "\n{}", errors.join("\n"));
+}
+
+#[test]
+fn the_table_lists_every_bug_as_caught() {
+    let text = std::fs::read_to_string(table()).expect("the table: run the long part");
+    assert!(text.starts_with(HEAD), "the table's head is another");
+    let rows: Vec<&str> = text[HEAD.len()..].lines().collect();
+    let patches = patches();
+    assert_eq!(rows.len(), patches.len(), "run the long part again");
+    for (row, patch) in rows.iter().zip(&patches) {
+        let caught = row.strip_prefix(&cells(patch));
+        let by = caught.unwrap_or_else(|| panic!("not {}: {row}", cells(patch)));
+        assert!(by.contains('`'), "uncaught: {row}");
+    }
 }
 
 #[test]
