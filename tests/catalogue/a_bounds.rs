@@ -90,7 +90,7 @@ fn a6_accuracy(trials: u64) -> Outcome {
 /// Sides up to 1 and as thin as 1e-6; every tenth has the sides of a known false hit far beyond a triangle.
 fn thin(k: u64, rng: &mut Rng) -> [Vec3; 3] {
     let [x, y, z] = [(); 3].map(|()| Vec3::from(rng.direction()));
-    if k % 10 == 0 {
+    if k.is_multiple_of(10) {
         let far = Vec3::from(rng.in_cube(400.0));
         return [
             far,
@@ -126,7 +126,7 @@ fn a7_grazing(trials: u64) -> Outcome {
             let n = normal.normalize_or(DVec3::Y);
             let across = n.cross(DVec3::from(rng.direction().map(f64::from)));
             let d = across.normalize_or(n.any_orthonormal_vector()) + angle * n;
-            let far = if k % 10 == 0 {
+            let far = if k.is_multiple_of(10) {
                 600.0
             } else {
                 rng.range(0.5, 50.0)

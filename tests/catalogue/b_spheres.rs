@@ -304,7 +304,7 @@ fn wrong_orders(scene: &FlatScene, shells: usize, n: usize, rng: &mut Rng) -> us
     for step in 0..=2 * shells {
         let hits = best(scene, &rays);
         let mut next = Rays::default();
-        for i in 0..n {
+        for (i, wrong) in wrong.iter_mut().enumerate() {
             // In through all of them, then out through all of them, then nothing.
             let expected = match step {
                 _ if step == 2 * shells => Hits::NONE,
@@ -312,7 +312,7 @@ fn wrong_orders(scene: &FlatScene, shells: usize, n: usize, rng: &mut Rng) -> us
                 _ => Spheres::TAG | (2 * shells - 1 - step) as u32,
             };
             let [o, dir] = ray(&rays, i);
-            wrong[i] |= hits.prim[i] != expected;
+            *wrong |= hits.prim[i] != expected;
             let start = if hits.prim[i] == Hits::NONE {
                 o
             } else {

@@ -184,7 +184,7 @@ fn d3_equality(trials: u64) -> Outcome {
                 wrong += differences(&truth, &answers(tree, Isa::best(), &rays));
             }
             // The others a batch in four, since they are many.
-            if start / BATCH % 4 == 0 {
+            if (start / BATCH).is_multiple_of(4) {
                 for rival in &rivals {
                     let mut hits = best(&brute, &rays);
                     let mut blocked = Vec::new();

@@ -63,9 +63,10 @@ impl Tree {
             .lines()
             .filter_map(artifact)
             .filter(|artifact| artifact["profile"]["test"] == true);
-        let binaries = tests.filter_map(|artifact| Some(artifact["executable"].as_str()?.into()));
+        let mut binaries =
+            tests.filter_map(|artifact| Some(artifact["executable"].as_str()?.into()));
         binaries
-            .last()
+            .next_back()
             .ok_or_else(|| format!("cargo built no tests of {target}: {told}"))
     }
 
