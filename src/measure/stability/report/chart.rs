@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 /// Pixels: a panel, and what stands around it.
 const PANEL: [f64; 2] = [330.0, 200.0];
-const LEFT: f64 = 62.0;
+const LEFT: f64 = 74.0;
 const TOP: f64 = 64.0;
 const GAP: f64 = 34.0;
 const FOOT: f64 = 46.0;
@@ -44,7 +44,8 @@ pub fn svg(report: &Report, title: &str) -> String {
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" \
          height=\"{height}\" font-family=\"sans-serif\" font-size=\"11\" fill=\"#222\"><style>.t{{font-size:15px;\
-         font-weight:600}}.a{{text-anchor:end}}.m{{text-anchor:middle}}.n{{fill:#666}}.w{{fill:#b3261e}}</style>\
+         font-weight:600}}.a{{text-anchor:end}}.m{{text-anchor:middle}}.n{{fill:#666}}.w{{fill:#b3261e}}\
+         .k{{font-size:9px}}</style>\
          <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>{body}</svg>\n"
     )
 }
@@ -97,12 +98,9 @@ fn panel(body: &mut String, left: f64, name: &str, rows: &[&Row], place: impl Fn
             left + PANEL[0]
         );
     }
-    text(
-        body,
-        [left + PANEL[0] - 6.0, height(1.0) + 13.0],
-        "a n",
-        "noise",
-    );
+    for (y, words) in [(height(1.0) + 13.0, "noise"), (limit - 5.0, "limit")] {
+        text(body, [left + PANEL[0] - 6.0, y], "a n", words);
+    }
     let mut ticks: Vec<(f64, String)> = Vec::new();
     for (row, at) in rows.iter().zip(&at) {
         let x = left + 18.0 + (PANEL[0] - 36.0) * (at - low) / span;
@@ -117,7 +115,7 @@ fn panel(body: &mut String, left: f64, name: &str, rows: &[&Row], place: impl Fn
     let mut told: Vec<f64> = Vec::new();
     for (x, words) in ticks {
         if told.iter().all(|other| (x - other).abs() > 24.0) {
-            text(body, [x, TOP + PANEL[1] + SAME + 16.0], "m n", &words);
+            text(body, [x, TOP + PANEL[1] + SAME + 16.0], "m n k", &words);
             told.push(x);
         }
     }
