@@ -29,7 +29,7 @@ pub(super) fn generate(wave: &mut Wave, camera: &Camera, sampler: Sampler, s: Im
     if camera.aperture_radius == 0.0 {
         wave.paths.push(origin, unit(through), slot);
     } else {
-        let [lx, ly] = concentric_disk(sample_pair(sampler, s.key, s.sample, Pair::Lens));
+        let [lx, ly] = concentric_disk::<f32>(sample_pair(sampler, s.key, s.sample, Pair::Lens));
         let shift =
             (Vec3::from(camera.right) * lx - Vec3::from(camera.down) * ly) * camera.aperture_radius;
         wave.paths.push(

@@ -1,7 +1,8 @@
 //! Reflectance of smooth interfaces.
 
 use super::Fresnel;
-use crate::math::Vec3;
+use super::vector::V3;
+use crate::math::lanes::Lanes;
 
 /// Reflectance and refracted cosine of unpolarised light at a smooth dielectric.
 ///
@@ -10,37 +11,42 @@ use crate::math::Vec3;
 #[inline]
 #[must_use]
 pub fn dielectric(mode: Fresnel, cos_i: f32, eta: f32) -> (f32, f32) {
+    dielectrics(mode, cos_i, eta)
+}
+
+/// [`dielectric`] in lanes.
+#[inline(always)]
+pub(super) fn dielectrics<L: Lanes>(mode: Fresnel, cos_i: L, eta: L) -> (L, L) {
+    let [zero, one] = [L::splat(0.0), L::splat(1.0)];
     // η² cos²θt = η² − 1 + cos²θi: written so, nothing cancels at grazing angles or at indices near 1.
-    let scaled = (eta - 1.0) * (eta + 1.0) + cos_i * cos_i;
-    if scaled <= 0.0 {
-        return (1.0, 0.0);
-    }
+    let scaled = (eta - one) * (eta + one) + cos_i * cos_i;
+    let total = scaled.le(zero);
     let cos_t = scaled.sqrt() / eta;
     let r = match mode {
         Fresnel::Exact => {
             let parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
             let perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
-            0.5 * (parallel * parallel + perpendicular * perpendicular)
+            L::splat(0.5) * (parallel * parallel + perpendicular * perpendicular)
         }
         Fresnel::Schlick => {
-            let k = (1.0 - eta) / (1.0 + eta);
+            let k = (one - eta) / (one + eta);
             let k0 = k * k;
-            k0 + (1.0 - k0) * fifth_power(1.0 - cos_i)
+            k0 + (one - k0) * fifth_power(one - cos_i)
         }
-        Fresnel::Off => 0.0,
+        Fresnel::Off => zero,
     };
-    (r, cos_t)
+    (L::select(total, one, r), L::select(total, zero, cos_t))
 }
 
 /// F = c + (1 − c)(1 − cos θ)⁵: what `Metal` is.
-#[inline]
+#[inline(always)]
 #[must_use]
-pub fn metal(color: Vec3, cos_i: f32) -> Vec3 {
-    color + (Vec3::ONE - color) * fifth_power(1.0 - cos_i)
+pub(super) fn metal<L: Lanes>(color: V3<L>, cos_i: L) -> V3<L> {
+    color + (V3::splat([1.0; 3]) - color) * fifth_power(L::splat(1.0) - cos_i)
 }
 
-#[inline]
-fn fifth_power(x: f32) -> f32 {
+#[inline(always)]
+fn fifth_power<L: Lanes>(x: L) -> L {
     let x2 = x * x;
     x2 * x2 * x
 }

@@ -9,6 +9,7 @@
 
 mod attributes;
 mod camera;
+mod chunk;
 pub mod fresnel;
 pub mod isa;
 pub mod kernels;
@@ -22,6 +23,7 @@ pub mod replay;
 mod sampler;
 mod scatter;
 pub mod spawn;
+mod stages;
 mod surface;
 #[cfg(test)]
 mod test_support;

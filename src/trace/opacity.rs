@@ -159,12 +159,7 @@ pub(super) fn pass_shadows(wave: &mut Wave, scene: &FlatScene, isa: Isa) -> u64 
 fn beyond(scene: &FlatScene, rays: &Rays, hits: &Hits, i: usize) -> Vec3 {
     let point = place(scene, rays, hits, i);
     let dir = get(&rays.dir, i).to_array();
-    let origin = offset_origin(
-        point.position.to_array(),
-        point.ng.to_array(),
-        hits.err[i],
-        dir,
-    );
+    let origin = offset_origin(point.position, point.ng, hits.err[i], dir);
     Vec3::from(origin)
 }
 

@@ -5,8 +5,9 @@ use super::camera::{ImageSample, generate, image_direction};
 use super::light::{light_pdf, towards};
 use super::opacity::{pass_paths, pass_shadows, random};
 use super::sampler::{Pair, pixel_key, sample_pair};
-use super::scatter::{Bounce, mis_weight, sample_bsdf, sample_lights};
-use super::surface::{color_by_vertices, surface};
+use super::scatter::{Bounce, mis_weight};
+use super::stages::{sample_bsdf, sample_lights, surface};
+use super::surface::color_by_vertices;
 use super::vector::{get, set, unit};
 use super::wave::{WAVE, Wave};
 use super::{Hits, Rect, TileSums, TraceOptions, closest_hit, occluded};
@@ -151,7 +152,7 @@ pub(super) fn arrive(wave: &mut Wave, bounce: Bounce, rays: &mut [u64; 2]) {
         let number = random(options.sampler, index);
         rays[0] += pass_paths(wave, scene, options.isa, number);
     }
-    surface(wave, scene);
+    surface(options.isa, wave, scene);
     if scene.needs.vertex_colors {
         color_by_vertices(wave, scene);
     }
@@ -373,7 +374,7 @@ fn trace_ids(
         // Half of it is enough to be there.
         pass_paths(wave, scene, options.isa, |_, _, _| 0.5);
     }
-    surface(wave, scene);
+    surface(options.isa, wave, scene);
     for i in 0..sums.uv.len() {
         let (prim, instance) = (wave.hits.prim[i], wave.hits.instance[i]);
         if prim == Hits::NONE {

@@ -1,12 +1,17 @@
 //! Lights without extent, seen from a point: one direction, and the irradiance of what faces it.
 
 use super::light::{LightSample, SHORT};
+use super::vector::V3;
 use crate::flat::{Lights, Punctual};
 use crate::math::{DVec3, Vec3};
 
 /// The one direction to light number `chosen` of the table; `None` where nothing of it arrives, or more than can be said.
 #[inline(never)]
-pub(super) fn sample_punctual(lights: &Lights, from: Vec3, chosen: usize) -> Option<LightSample> {
+pub(super) fn sample_punctual(
+    lights: &Lights,
+    from: Vec3,
+    chosen: usize,
+) -> Option<LightSample<f32>> {
     let below = chosen.checked_sub(1).map_or(0.0, |k| lights.cumulative[k]);
     let probability = (lights.cumulative[chosen] - below) / lights.total();
     let others = lights.len() - lights.punctual.len();
@@ -38,11 +43,12 @@ pub(super) fn sample_punctual(lights: &Lights, from: Vec3, chosen: usize) -> Opt
     let pdf = probability as f32;
     let arrives = radiance.max_element() > 0.0 && radiance.is_finite() && pdf > 0.0;
     arrives.then_some(LightSample {
-        dir: to.as_vec3(),
+        dir: V3::from(to.as_vec3()),
         t_max,
-        radiance,
+        radiance: V3::from(radiance),
         pdf,
-        punctual: true,
+        punctual: 1,
+        valid: 1,
     })
 }
 

@@ -4,6 +4,7 @@
 //! pair, the two coordinates are Owen-scrambled (Burley 2020, "Practical hash-based Owen scrambling", JCGT 9(4)).
 
 use super::{Sampler, opacity::MAX_PASSES};
+use crate::math::lanes::{BitLanes, Words};
 
 /// What a pair of dimensions is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,19 +64,31 @@ pub(super) fn pixel_key(seed: u64, frame: u32, x: u32, y: u32) -> u32 {
 #[inline(always)]
 #[must_use]
 pub(super) fn sample_pair(sampler: Sampler, key: u32, sample: u32, pair: Pair) -> [f32; 2] {
-    let key = mix(key ^ pair.row().wrapping_mul(0x9e37_79b9));
+    sample_pairs::<f32>(sampler, key, sample, pair)
+}
+
+/// The same for keys and samples in lanes.
+#[inline(always)]
+pub(super) fn sample_pairs<L: BitLanes>(
+    sampler: Sampler,
+    key: L::Bits,
+    sample: L::Bits,
+    pair: Pair,
+) -> [L; 2] {
+    let word = |x| <L::Bits as Words>::splat(x);
+    let key = mix(key.xor(word(pair.row().wrapping_mul(0x9e37_79b9))));
     let (x, y) = match sampler {
         Sampler::Sobol => {
             // The index shuffled; reversed, it is the first dimension.
-            let index = laine_karras(sample.reverse_bits(), key).reverse_bits();
+            let index = laine_karras(sample.reversed(), key).reversed();
             (
-                laine_karras(index, mix(key ^ 1)).reverse_bits(),
-                laine_karras(sobol_second_reversed(index), mix(key ^ 2)).reverse_bits(),
+                laine_karras(index, mix(key.xor(word(1)))).reversed(),
+                laine_karras(sobol_second_reversed(index), mix(key.xor(word(2)))).reversed(),
             )
         }
         Sampler::Independent => {
-            let x = mix(mix(key ^ sample) ^ 0x85eb_ca6b);
-            (x, mix(x ^ key))
+            let x = mix(mix(key.xor(sample)).xor(word(0x85eb_ca6b)));
+            (x, mix(x.xor(key)))
         }
     };
     [unit(x), unit(y)]
@@ -83,41 +96,38 @@ pub(super) fn sample_pair(sampler: Sampler, key: u32, sample: u32, pair: Pair) -
 
 /// The top 23 bits as the middle of their interval in (0, 1).
 #[inline(always)]
-fn unit(x: u32) -> f32 {
-    ((x >> 9) as f32 + 0.5) * (1.0 / 8_388_608.0)
+fn unit<L: BitLanes>(x: L::Bits) -> L {
+    (L::from_words(x.down::<9>()) + L::splat(0.5)) * L::splat(1.0 / 8_388_608.0)
 }
 
 /// A bijective mix of 32 bits: xor-shift and multiply with the constants of the "lowbias32" search by C. Wellons.
 #[inline(always)]
-fn mix(mut x: u32) -> u32 {
-    x ^= x >> 16;
-    x = x.wrapping_mul(0x7feb_352d);
-    x ^= x >> 15;
-    x = x.wrapping_mul(0x846c_a68b);
-    x ^ (x >> 16)
+fn mix<W: Words>(x: W) -> W {
+    let x = x.xor(x.down::<16>()).times(W::splat(0x7feb_352d));
+    let x = x.xor(x.down::<15>()).times(W::splat(0x846c_a68b));
+    x.xor(x.down::<16>())
 }
 
 /// Owen scrambling, which flips every bit by a hash of those above it, on reversed bits: every bit is changed by lower bits
 /// only (Laine and Karras 2011, constants of Burley 2020, listing 3).
 #[inline(always)]
-fn laine_karras(mut x: u32, seed: u32) -> u32 {
-    x = x.wrapping_add(seed);
-    x ^= x.wrapping_mul(0x6c50_b47c);
-    x ^= x.wrapping_mul(0xb82f_1e52);
-    x ^= x.wrapping_mul(0xc7af_e638);
-    x ^ x.wrapping_mul(0x8d22_f6e6)
+fn laine_karras<W: Words>(x: W, seed: W) -> W {
+    let x = x.plus(seed);
+    let x = x.xor(x.times(W::splat(0x6c50_b47c)));
+    let x = x.xor(x.times(W::splat(0xb82f_1e52)));
+    let x = x.xor(x.times(W::splat(0xc7af_e638)));
+    x.xor(x.times(W::splat(0x8d22_f6e6)))
 }
 
 /// The second Sobol dimension, bits reversed: the generator matrix is Pascal's triangle modulo 2, applied by five doubling
 /// steps.
 #[inline(always)]
-fn sobol_second_reversed(index: u32) -> u32 {
-    let mut x = index;
-    x ^= (x >> 16) & 0x0000_ffff;
-    x ^= (x >> 8) & 0x00ff_00ff;
-    x ^= (x >> 4) & 0x0f0f_0f0f;
-    x ^= (x >> 2) & 0x3333_3333;
-    x ^ ((x >> 1) & 0x5555_5555)
+fn sobol_second_reversed<W: Words>(index: W) -> W {
+    let x = index.xor(index.down::<16>().and(W::splat(0x0000_ffff)));
+    let x = x.xor(x.down::<8>().and(W::splat(0x00ff_00ff)));
+    let x = x.xor(x.down::<4>().and(W::splat(0x0f0f_0f0f)));
+    let x = x.xor(x.down::<2>().and(W::splat(0x3333_3333)));
+    x.xor(x.down::<1>().and(W::splat(0x5555_5555)))
 }
 
 #[cfg(test)]
@@ -152,10 +162,10 @@ mod tests {
     /// interval holds as many numbers as another.
     #[test]
     fn numbers_are_inside_and_evenly_spread() {
-        assert!(unit(0) > 0.0 && unit(u32::MAX) < 1.0);
+        assert!(unit::<f32>(0) > 0.0 && unit::<f32>(u32::MAX) < 1.0);
         let mut last = 0.0;
         for k in 0..1u32 << 23 {
-            let u = unit(k << 9 | k & 0x1ff);
+            let u = unit::<f32>(k << 9 | k & 0x1ff);
             assert!(u > last && u < 1.0, "{k}");
             last = u;
         }

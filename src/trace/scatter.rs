@@ -1,17 +1,18 @@
-//! Sample light and sample bsdf, one loop per kind of scattering.
+//! Sample light and sample bsdf, one loop per kind of scattering, over lanes of paths.
 //!
 //! Weights are f cos θ / pdf in closed form: a Lambert sample multiplies the throughput by the albedo and nothing
 //! else, so that a furnace is exact in every sample.
 
-use super::fresnel::{dielectric, metal};
-use super::light::{LightSample, sample_light};
-use super::sampler::{Pair, sample_pair};
-use super::spawn::offset_origin;
-use super::vector::{cosine_hemisphere, get, reflect, set};
+use super::chunk::Chunk;
+use super::fresnel::{dielectrics, metal};
+use super::light::{LightSample, sample_lights as sample_table};
+use super::sampler::{Pair, sample_pairs};
+use super::spawn::lanes::offset_origin;
+use super::vector::{V3, cosine_hemisphere, reflect};
 use super::wave::Wave;
 use super::{Fresnel, TraceOptions};
-use crate::flat::{FlatScene, Material, Scatter};
-use crate::math::Vec3;
+use crate::flat::{FlatScene, Scatter};
+use crate::math::lanes::{BitLanes, Lanes, MOST};
 use std::f32::consts::FRAC_1_PI;
 
 /// What every stage of a bounce is lent.
@@ -23,308 +24,363 @@ pub(super) struct Bounce<'a> {
     pub(super) index: u32,
 }
 
-/// A path's surroundings, turned to the side that it came from.
-struct Local {
-    wo: Vec3,
-    ng: Vec3,
-    ns: Vec3,
-    position: Vec3,
-    err: f32,
-    color: Vec3,
+/// The surroundings of paths, turned to the side that each came from.
+struct Local<L: BitLanes> {
+    wo: V3<L>,
+    ng: V3<L>,
+    ns: V3<L>,
+    position: V3<L>,
+    err: L,
+    color: V3<L>,
     /// The path came from the authored outside.
-    outside: bool,
+    outside: L::Mask,
 }
 
 /// What a bsdf sample decides.
-struct Scattered {
-    dir: Vec3,
+struct Scattered<L: BitLanes> {
+    dir: V3<L>,
     /// f cos θ / pdf.
-    weight: Vec3,
+    weight: V3<L>,
     /// Over solid angle; 0 for a mirror-like lobe.
-    pdf: f32,
+    pdf: L,
     /// Squared relative index of a refraction, else 1.
-    eta2: f32,
+    eta2: L,
 }
 
-impl Local {
-    fn new(wave: &Wave, i: usize) -> Local {
-        let wo = -get(&wave.paths.rays.dir, i);
+impl<L: BitLanes> Local<L> {
+    #[inline(always)]
+    fn new(wave: &Wave, chunk: &Chunk) -> Local<L> {
+        let wo = -chunk.vector(&wave.paths.rays.dir);
         let s = &wave.surfaces;
-        let (ng, ns) = (get(&s.ng, i), get(&s.ns, i));
-        let outside = wo.dot(ng) >= 0.0;
-        let side = if outside { 1.0 } else { -1.0 };
+        let (ng, ns) = (chunk.vector(&s.ng), chunk.vector(&s.ns));
+        let outside = L::splat(0.0).le(wo.dot(ng));
+        let side = L::select(outside, L::splat(1.0), L::splat(-1.0));
         Local {
             wo,
             ng: ng * side,
             ns: ns * side,
-            position: get(&s.position, i),
-            err: wave.hits.err[i],
-            color: get(&s.color, i),
+            position: chunk.vector(&s.position),
+            err: chunk.lanes(&wave.hits.err),
+            color: chunk.vector(&s.color),
             outside,
         }
     }
 
     /// Where rays towards `dir` start.
-    fn origin(&self, dir: Vec3) -> Vec3 {
-        let (p, ng) = (self.position.to_array(), self.ng.to_array());
-        Vec3::from(offset_origin(p, ng, self.err, dir.to_array()))
+    #[inline(always)]
+    fn origin(&self, dir: V3<L>) -> V3<L> {
+        V3(offset_origin(self.position.0, self.ng.0, self.err, dir.0))
     }
 
     /// Cosine at the shading normal; 0 below either surface.
-    fn cosine(&self, dir: Vec3) -> f32 {
-        if dir.dot(self.ng) > 0.0 {
-            dir.dot(self.ns).max(0.0)
-        } else {
-            0.0
-        }
+    #[inline(always)]
+    fn cosine(&self, dir: V3<L>) -> L {
+        let zero = L::splat(0.0);
+        let above = zero.lt(dir.dot(self.ng));
+        L::select(above, dir.dot(self.ns).max(zero), zero)
     }
 
     /// Mirror direction about the shading normal. Where that dips below the geometric surface it is folded back up,
     /// continuously, so that smooth mirrors have no black specks.
-    fn mirror(&self) -> Vec3 {
+    #[inline(always)]
+    fn mirror(&self) -> V3<L> {
         let dir = reflect(self.wo, self.ns);
         let below = dir.dot(self.ng);
-        if below < 0.0 {
-            dir - self.ng * (2.0 * below)
-        } else {
-            dir
-        }
+        let folded = dir - self.ng * (L::splat(2.0) * below);
+        V3::select(below.lt(L::splat(0.0)), folded, dir)
     }
-}
 
-/// Cosine of incidence at the shading normal, within [0, 1].
-fn incidence(local: &Local) -> f32 {
-    local.wo.dot(local.ns).clamp(0.0, 1.0)
+    /// Cosine of incidence at the shading normal, within [0, 1].
+    #[inline(always)]
+    fn incidence(&self) -> L {
+        let cos = self.wo.dot(self.ns);
+        L::splat(1.0).min(L::splat(0.0).max(cos))
+    }
 }
 
 /// Power heuristic, exponent 2 (Veach 1997, §9.2.4); exact when a density is 0 or infinite.
-#[inline]
-pub(super) fn mis_weight(pdf: f32, other: f32) -> f32 {
-    if other == 0.0 {
-        return 1.0;
-    }
+#[inline(always)]
+pub(super) fn mis_weight<L: Lanes>(pdf: L, other: L) -> L {
+    let one = L::splat(1.0);
     let ratio = other / pdf;
-    1.0 / (1.0 + ratio * ratio)
+    let weight = one / (one + ratio * ratio);
+    L::select(other.abs().le(L::splat(0.0)), one, weight)
 }
 
-/// The coat and the base of a plastic, seen from one direction.
+/// The coat and the base of plastics, seen from one direction.
 ///
 /// The base under the coat reflects (1 − F(θi)) (1 − F(θo)) a / (π n² (1 − a F_int)): what enters, bounces between base
 /// and coat, and leaves (the smooth case of Ashikhmin and Shirley's energy argument; at a = 1 all light comes back).
-struct Plastic<'a> {
+struct Plastic<L: BitLanes> {
     mode: Fresnel,
-    material: &'a Material,
-    coat: f32,
-    base: Vec3,
+    ior: L,
+    coat: L,
+    base: V3<L>,
     /// Probability of sampling the coat.
-    coat_share: f32,
+    coat_share: L,
 }
 
-impl<'a> Plastic<'a> {
-    fn new(mode: Fresnel, material: &'a Material, local: &Local) -> Plastic<'a> {
-        let (coat, _) = dielectric(mode, incidence(local), material.ior);
-        let inner = Vec3::ONE - local.color * material.internal_reflectance;
-        let base = local.color / (inner * (material.ior * material.ior));
+impl<L: BitLanes> Plastic<L> {
+    #[inline(always)]
+    fn new(bounce: Bounce, wave: &Wave, chunk: &Chunk, local: &Local<L>) -> Plastic<L> {
+        let mode = bounce.options.fresnel;
+        let [mut iors, mut reflectances] = [[0.0; MOST]; 2];
+        for lane in 0..L::N {
+            let material =
+                &bounce.scene.materials[chunk.at(&wave.surfaces.material, lane) as usize];
+            (iors[lane], reflectances[lane]) = (material.ior, material.internal_reflectance);
+        }
+        let (ior, internal) = (L::load(&iors), L::load(&reflectances));
+        let one = L::splat(1.0);
+        let (coat, _) = dielectrics(mode, local.incidence(), ior);
+        let V3(color) = local.color;
+        let n2 = ior * ior;
+        let base = color.map(|c| c / ((one - c * internal) * n2));
         // The base sends back about (1 − F) a (1 − F_int) / (1 − a F_int) of what comes.
-        let back = base * (material.ior * material.ior) * (1.0 - material.internal_reflectance);
-        let (coat_power, base_power) = (coat, (1.0 - coat) * back.max_element());
-        let coat_share = if base_power > 0.0 {
-            coat_power / (coat_power + base_power)
-        } else {
-            1.0
-        };
+        let [r, g, b] = base.map(|c| c * n2 * (one - internal));
+        let base_power = (one - coat) * r.max(g.max(b));
+        let share = coat / (coat + base_power);
         Plastic {
             mode,
-            material,
+            ior,
             coat,
-            base,
-            coat_share,
+            base: V3(base),
+            coat_share: L::select(L::splat(0.0).lt(base_power), share, one),
         }
     }
 
     /// π times the base's bsdf towards `dir`.
-    fn eval_base(&self, cos: f32) -> Vec3 {
-        let (out, _) = dielectric(self.mode, cos.min(1.0), self.material.ior);
-        self.base * ((1.0 - self.coat) * (1.0 - out))
+    #[inline(always)]
+    fn eval_base(&self, cos: L) -> V3<L> {
+        let one = L::splat(1.0);
+        let (out, _) = dielectrics(self.mode, cos.min(one), self.ior);
+        self.base * ((one - self.coat) * (one - out))
     }
 }
 
 /// Next-event estimation at the diffuse and plastic paths: fills the shadow rays of this bounce.
-pub(super) fn sample_lights(wave: &mut Wave, bounce: Bounce) {
-    wave.shadows.clear();
-    for kind in [Scatter::Diffuse, Scatter::Plastic] {
-        for k in 0..wave.by_scatter[kind as usize].len() {
-            let i = wave.by_scatter[kind as usize][k] as usize;
-            let local = Local::new(wave, i);
-            let slot = wave.paths.slot[i];
-            let origin = local.origin(local.ng);
-            let Some(light) = light_from(wave, bounce, slot as usize, origin) else {
-                continue;
-            };
-            let cos = local.cosine(light.dir);
-            if cos == 0.0 {
-                continue;
-            }
-            let (f_pi, share) = if kind == Scatter::Diffuse {
-                (local.color, 1.0)
-            } else {
-                let material = &bounce.scene.materials[wave.surfaces.material[i] as usize];
-                let plastic = Plastic::new(bounce.options.fresnel, material, &local);
-                (plastic.eval_base(cos), 1.0 - plastic.coat_share)
-            };
-            let weight = if bounce.options.mis && !light.punctual {
-                mis_weight(light.pdf, share * cos * FRAC_1_PI)
-            } else {
-                1.0
-            };
-            let throughput = get(&wave.paths.throughput, i);
-            let radiance =
-                throughput * f_pi * light.radiance * (FRAC_1_PI * cos * weight / light.pdf);
-            wave.shadows
-                .push(origin, light.dir, light.t_max, radiance, slot);
+#[inline(always)]
+pub(super) fn sample_lights<L: BitLanes>(wave: &mut Wave, bounce: Bounce) {
+    let kinds = [Scatter::Diffuse, Scatter::Plastic];
+    let most: usize = kinds
+        .iter()
+        .map(|&k| wave.by_scatter[k as usize].len())
+        .sum();
+    wave.shadows.reserve(most);
+    let mut len = 0;
+    for kind in kinds {
+        for first in (0..wave.by_scatter[kind as usize].len()).step_by(L::N) {
+            let chunk = Chunk::new::<L>(&wave.by_scatter[kind as usize][first..]);
+            len += sample_light::<L>(wave, bounce, kind, &chunk, len);
         }
     }
+    wave.shadows.truncate(len);
 }
 
-fn light_from(wave: &Wave, bounce: Bounce, slot: usize, origin: Vec3) -> Option<LightSample> {
-    let (key, sample) = (wave.slots.key[slot], wave.slots.sample[slot]);
-    // One light needs no choice.
-    let choice = match bounce.scene.lights.len() {
-        1 => 0.0,
-        _ => sample_pair(
-            bounce.options.sampler,
-            key,
-            sample,
-            Pair::Choice(bounce.index),
-        )[0],
+/// One chunk of it: writes its shadow rays from `at` on, returns how many.
+#[inline(always)]
+fn sample_light<L: BitLanes>(
+    wave: &mut Wave,
+    bounce: Bounce,
+    kind: Scatter,
+    chunk: &Chunk,
+    at: usize,
+) -> usize {
+    let local = Local::<L>::new(wave, chunk);
+    let origin = local.origin(local.ng);
+    let light = light_from(wave, bounce, chunk, origin);
+    let cos = local.cosine(light.dir);
+    let valid = light.valid & L::bits(L::splat(0.0).lt(cos)) & chunk.members();
+    if valid == 0 {
+        return 0;
+    }
+    let per_pi = L::splat(FRAC_1_PI);
+    let (f_pi, share) = if kind == Scatter::Diffuse {
+        (local.color, L::splat(1.0))
+    } else {
+        let plastic = Plastic::new(bounce, wave, chunk, &local);
+        (plastic.eval_base(cos), L::splat(1.0) - plastic.coat_share)
     };
-    let u = sample_pair(
-        bounce.options.sampler,
-        key,
-        sample,
-        Pair::Light(bounce.index),
-    );
-    sample_light(bounce.scene, origin, choice, u)
+    let mut weight = L::splat(1.0);
+    if bounce.options.mis {
+        weight = mis_weight(light.pdf, share * cos * per_pi);
+    }
+    if light.punctual != 0 {
+        let mut extended = [0.0; MOST];
+        (0..L::N).for_each(|i| extended[i] = (!light.punctual >> i & 1) as f32);
+        let extended = L::splat(0.0).lt(L::load(&extended));
+        weight = L::select(extended, weight, L::splat(1.0));
+    }
+    let throughput: V3<L> = chunk.vector(&wave.paths.throughput);
+    let radiance = throughput * f_pi * light.radiance * (per_pi * cos * weight / light.pdf);
+    let slots = chunk.words::<L>(&wave.paths.slot);
+    let ray = (origin, light.dir, light.t_max);
+    wave.shadows.pack(at, valid, ray, radiance, slots)
+}
+
+#[inline(always)]
+fn light_from<L: BitLanes>(
+    wave: &Wave,
+    bounce: Bounce,
+    chunk: &Chunk,
+    origin: V3<L>,
+) -> LightSample<L> {
+    let numbers = Numbers::<L>::new(wave, bounce, chunk);
+    // One light needs no choice.
+    let choice = || numbers.pair(Pair::Choice(bounce.index))[0];
+    let u = numbers.pair(Pair::Light(bounce.index));
+    sample_table(bounce.scene, origin, choice, u)
+}
+
+/// Where the random numbers of paths come from.
+struct Numbers<L: BitLanes> {
+    sampler: super::Sampler,
+    key: L::Bits,
+    sample: L::Bits,
+}
+
+impl<L: BitLanes> Numbers<L> {
+    #[inline(always)]
+    fn new(wave: &Wave, bounce: Bounce, chunk: &Chunk) -> Numbers<L> {
+        let slots = chunk.through::<L>(&wave.paths.slot);
+        Numbers {
+            sampler: bounce.options.sampler,
+            key: slots.words::<L>(&wave.slots.key),
+            sample: slots.words::<L>(&wave.slots.sample),
+        }
+    }
+
+    #[inline(always)]
+    fn pair(&self, pair: Pair) -> [L; 2] {
+        sample_pairs(self.sampler, self.key, self.sample, pair)
+    }
 }
 
 /// Samples the bsdf of every path of one kind: its next ray, its throughput, or its end.
-pub(super) fn sample_bsdf(wave: &mut Wave, bounce: Bounce, kind: Scatter) {
-    for k in 0..wave.by_scatter[kind as usize].len() {
-        let i = wave.by_scatter[kind as usize][k] as usize;
-        let local = Local::new(wave, i);
-        let material = &bounce.scene.materials[wave.surfaces.material[i] as usize];
-        let slot = wave.paths.slot[i] as usize;
-        let (key, sample) = (wave.slots.key[slot], wave.slots.sample[slot]);
-        let pair = |pair| sample_pair(bounce.options.sampler, key, sample, pair);
+#[inline(always)]
+pub(super) fn sample_bsdf<L: BitLanes>(wave: &mut Wave, bounce: Bounce, kind: Scatter) {
+    for first in (0..wave.by_scatter[kind as usize].len()).step_by(L::N) {
+        let chunk = Chunk::new::<L>(&wave.by_scatter[kind as usize][first..]);
+        let local = Local::<L>::new(wave, &chunk);
+        let numbers = || Numbers::<L>::new(wave, bounce, &chunk);
         let scattered = match kind {
-            Scatter::Nothing => None,
-            Scatter::Diffuse => sample_diffuse(&local, pair(Pair::Direction(bounce.index))),
-            Scatter::Mirror => Some(Scattered {
-                dir: local.mirror(),
-                weight: local.color,
-                pdf: 0.0,
-                eta2: 1.0,
-            }),
-            Scatter::Metal => {
-                let weight = metal(local.color, incidence(&local));
-                Some(Scattered {
-                    dir: local.mirror(),
-                    weight,
-                    pdf: 0.0,
-                    eta2: 1.0,
-                })
+            Scatter::Nothing => return,
+            Scatter::Diffuse => {
+                sample_diffuse(&local, numbers().pair(Pair::Direction(bounce.index)))
             }
+            Scatter::Mirror => mirrored(&local, local.color),
+            Scatter::Metal => mirrored(&local, metal(local.color, local.incidence())),
             Scatter::Glass => {
-                let [_, lobe] = pair(Pair::Choice(bounce.index));
-                Some(sample_glass(bounce.options.fresnel, material, &local, lobe))
+                let [_, lobe] = numbers().pair(Pair::Choice(bounce.index));
+                sample_glass(bounce, wave, &chunk, &local, lobe)
             }
             Scatter::Plastic => {
-                let [_, lobe] = pair(Pair::Choice(bounce.index));
-                let plastic = Plastic::new(bounce.options.fresnel, material, &local);
-                sample_plastic(&plastic, &local, lobe, pair(Pair::Direction(bounce.index)))
+                let numbers = numbers();
+                let [_, lobe] = numbers.pair(Pair::Choice(bounce.index));
+                let plastic = Plastic::new(bounce, wave, &chunk, &local);
+                let u = numbers.pair(Pair::Direction(bounce.index));
+                sample_plastic(&plastic, &local, lobe, u)
             }
         };
-        match scattered {
-            Some(s) if s.weight.max_element() > 0.0 => follow(wave, i, &local, &s),
-            _ => wave.alive[i] = false,
-        }
+        follow(wave, &chunk, &local, &scattered);
     }
 }
 
-/// Sends path i on its way.
-fn follow(wave: &mut Wave, i: usize, local: &Local, s: &Scattered) {
+/// Sends paths on their way; those that carry nothing end.
+#[inline(always)]
+fn follow<L: BitLanes>(wave: &mut Wave, chunk: &Chunk, local: &Local<L>, s: &Scattered<L>) {
+    let alive = L::bits(s.weight.any_positive());
     let paths = &mut wave.paths;
-    set(&mut paths.rays.origin, i, local.origin(s.dir));
-    set(&mut paths.rays.dir, i, s.dir);
-    let throughput = get(&paths.throughput, i) * s.weight;
-    set(&mut paths.throughput, i, throughput);
-    paths.pdf[i] = s.pdf;
-    paths.eta2[i] *= s.eta2;
+    chunk.put_vector(local.origin(s.dir), &mut paths.rays.origin);
+    chunk.put_vector(s.dir, &mut paths.rays.dir);
+    let throughput = chunk.vector(&paths.throughput) * s.weight;
+    chunk.put_vector(throughput, &mut paths.throughput);
+    chunk.put(s.pdf, &mut paths.pdf);
+    let eta2 = chunk.lanes::<L>(&paths.eta2) * s.eta2;
+    chunk.put(eta2, &mut paths.eta2);
+    for (lane, &i) in chunk.index().iter().enumerate() {
+        wave.alive[i as usize] = alive >> lane & 1 == 1;
+    }
 }
 
-fn sample_diffuse(local: &Local, u: [f32; 2]) -> Option<Scattered> {
+/// A mirror-like lobe.
+#[inline(always)]
+fn mirrored<L: BitLanes>(local: &Local<L>, weight: V3<L>) -> Scattered<L> {
+    Scattered {
+        dir: local.mirror(),
+        weight,
+        pdf: L::splat(0.0),
+        eta2: L::splat(1.0),
+    }
+}
+
+#[inline(always)]
+fn sample_diffuse<L: BitLanes>(local: &Local<L>, u: [L; 2]) -> Scattered<L> {
     let dir = cosine_hemisphere(local.ns, u);
     let cos = local.cosine(dir);
-    (cos > 0.0).then_some(Scattered {
+    let above = L::splat(0.0).lt(cos);
+    Scattered {
         dir,
-        weight: local.color,
-        pdf: cos * FRAC_1_PI,
-        eta2: 1.0,
-    })
+        weight: V3::select(above, local.color, V3::splat([0.0; 3])),
+        pdf: cos * L::splat(FRAC_1_PI),
+        eta2: L::splat(1.0),
+    }
 }
 
 /// Reflects with probability F, else refracts. Radiance that is carried into the denser side shrinks by the squared
 /// relative index (Veach 1997, §5.2), and grows back when it leaves.
-fn sample_glass(mode: Fresnel, material: &Material, local: &Local, lobe: f32) -> Scattered {
-    let eta = if local.outside {
-        material.ior
-    } else {
-        1.0 / material.ior
-    };
-    let cos_i = incidence(local);
-    let (reflectance, cos_t) = dielectric(mode, cos_i, eta);
-    if lobe < reflectance {
-        return Scattered {
-            dir: local.mirror(),
-            weight: Vec3::ONE,
-            pdf: 0.0,
-            eta2: 1.0,
-        };
+#[inline(always)]
+fn sample_glass<L: BitLanes>(
+    bounce: Bounce,
+    wave: &Wave,
+    chunk: &Chunk,
+    local: &Local<L>,
+    lobe: L,
+) -> Scattered<L> {
+    let mut iors = [0.0; MOST];
+    for lane in 0..L::N {
+        let material = chunk.at(&wave.surfaces.material, lane) as usize;
+        iors[lane] = bounce.scene.materials[material].ior;
     }
-    let dir = (local.ns * cos_i - local.wo) * (1.0 / eta) - local.ns * cos_t;
+    let [zero, one] = [L::splat(0.0), L::splat(1.0)];
+    let ior = L::load(&iors);
+    let eta = L::select(local.outside, ior, one / ior);
+    let cos_i = local.incidence();
+    let (reflectance, cos_t) = dielectrics(bounce.options.fresnel, cos_i, eta);
+    let reflects = lobe.lt(reflectance);
+    let dir = (local.ns * cos_i - local.wo) * (one / eta) - local.ns * cos_t;
     // A shading normal may bend the ray back above the surface: fold it below, as reflection does upwards.
     let above = dir.dot(local.ng);
-    let dir = if above > 0.0 {
-        dir - local.ng * (2.0 * above)
-    } else {
-        dir
-    };
+    let folded = dir - local.ng * (L::splat(2.0) * above);
+    let refracted = V3::select(zero.lt(above), folded, dir);
+    let weight = local.color * (one / (eta * eta));
     Scattered {
-        dir,
-        weight: local.color * (1.0 / (eta * eta)),
-        pdf: 0.0,
-        eta2: eta * eta,
+        dir: V3::select(reflects, local.mirror(), refracted),
+        weight: V3::select(reflects, V3::splat([1.0; 3]), weight),
+        pdf: zero,
+        eta2: L::select(reflects, one, eta * eta),
     }
 }
 
-fn sample_plastic(plastic: &Plastic, local: &Local, lobe: f32, u: [f32; 2]) -> Option<Scattered> {
-    if lobe < plastic.coat_share {
-        let weight = Vec3::splat(plastic.coat / plastic.coat_share);
-        return Some(Scattered {
-            dir: local.mirror(),
-            weight,
-            pdf: 0.0,
-            eta2: 1.0,
-        });
-    }
-    let share = 1.0 - plastic.coat_share;
+#[inline(always)]
+fn sample_plastic<L: BitLanes>(
+    plastic: &Plastic<L>,
+    local: &Local<L>,
+    lobe: L,
+    u: [L; 2],
+) -> Scattered<L> {
+    let [zero, one] = [L::splat(0.0), L::splat(1.0)];
+    let coated = lobe.lt(plastic.coat_share);
+    let coat = plastic.coat / plastic.coat_share;
+    let share = one - plastic.coat_share;
     let dir = cosine_hemisphere(local.ns, u);
     let cos = local.cosine(dir);
-    let weight = plastic.eval_base(cos) / share;
-    (cos > 0.0).then_some(Scattered {
-        dir,
-        weight,
-        pdf: share * cos * FRAC_1_PI,
-        eta2: 1.0,
-    })
+    let base = V3(plastic.eval_base(cos).0.map(|c| c / share));
+    let base = V3::select(zero.lt(cos), base, V3::splat([0.0; 3]));
+    Scattered {
+        dir: V3::select(coated, local.mirror(), dir),
+        weight: V3::select(coated, V3([coat; 3]), base),
+        pdf: L::select(coated, zero, share * cos * L::splat(FRAC_1_PI)),
+        eta2: one,
+    }
 }

@@ -7,6 +7,8 @@
     reason = "axes are numbers here: several arrays are indexed by one"
 )]
 
+pub(super) mod lanes;
+
 use crate::flat::{BLOCK, Instance, Triangles};
 
 /// γ(n) = n ε / (1 − n ε), ε = 2⁻²⁴: bound on the relative error of n roundings (Higham, *Accuracy and Stability of
@@ -34,12 +36,7 @@ pub fn triangle_vertices(triangles: &Triangles, prim: u32) -> [[f32; 3]; 3] {
 #[must_use]
 #[inline(always)]
 pub fn triangle_point(v: [[f32; 3]; 3], b1: f32, b2: f32) -> [f32; 3] {
-    let b0 = 1.0 - b1 - b2;
-    let mut p = [0.0; 3];
-    for axis in 0..3 {
-        p[axis] = b0 * v[0][axis] + b1 * v[1][axis] + b2 * v[2][axis];
-    }
-    p
+    lanes::triangle_point(v, b1, b2)
 }
 
 /// The unit normal of a triangle, towards the side from which its vertices run counter-clockwise; computed in f64, since a
@@ -47,16 +44,7 @@ pub fn triangle_point(v: [[f32; 3]; 3], b1: f32, b2: f32) -> [f32; 3] {
 #[must_use]
 #[inline(always)]
 pub fn triangle_normal(v: [[f32; 3]; 3]) -> [f32; 3] {
-    let edge = |k: usize, axis: usize| f64::from(v[k][axis]) - f64::from(v[0][axis]);
-    let [a, b] = [
-        [edge(1, 0), edge(1, 1), edge(1, 2)],
-        [edge(2, 0), edge(2, 1), edge(2, 2)],
-    ];
-    normalized([
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ])
+    lanes::triangle_normal(v)
 }
 
 /// A local point in scene units; f64 inside, rounded once.
@@ -93,24 +81,12 @@ pub fn instance_normal(instance: &Instance, n: [f32; 3]) -> [f32; 3] {
 #[must_use]
 #[inline(always)]
 pub fn sphere_point(
-    [origin, dir]: [[f32; 3]; 2],
+    ray: [[f32; 3]; 2],
     t: f32,
     center: [f64; 3],
     radius: f64,
 ) -> ([f32; 3], [f32; 3]) {
-    let mut from_center = [0.0; 3];
-    for axis in 0..3 {
-        let p = f64::from(origin[axis]) + f64::from(t) * f64::from(dir[axis]);
-        from_center[axis] = p - center[axis];
-    }
-    let length = length(from_center);
-    let [mut point, mut normal] = [[0.0; 3]; 2];
-    for axis in 0..3 {
-        let n = from_center[axis] / length;
-        point[axis] = (center[axis] + radius * n) as f32;
-        normal[axis] = n as f32;
-    }
-    (point, normal)
+    lanes::sphere_point(ray, t, center, radius)
 }
 
 /// The origin of a ray that leaves `p` in direction `dir`: `p` moved by `err` along the geometric normal to the side that
@@ -118,24 +94,7 @@ pub fn sphere_point(
 #[must_use]
 #[inline(always)]
 pub fn offset_origin(p: [f32; 3], ng: [f32; 3], err: f32, dir: [f32; 3]) -> [f32; 3] {
-    let mut cos = 0.0;
-    for axis in 0..3 {
-        cos += f64::from(ng[axis]) * f64::from(dir[axis]);
-    }
-    let distance = if cos < 0.0 { -err } else { err };
-    let mut origin = p;
-    for axis in 0..3 {
-        let offset = distance * ng[axis];
-        let moved = p[axis] + offset;
-        origin[axis] = if offset > 0.0 {
-            moved.next_up()
-        } else if offset < 0.0 {
-            moved.next_down()
-        } else {
-            moved
-        };
-    }
-    origin
+    lanes::offset_origin(p, ng, err, dir)
 }
 
 #[inline(always)]

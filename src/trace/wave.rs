@@ -1,8 +1,9 @@
 //! The wave: a batch of paths in SoA path state, all at the same bounce.
 
-use super::vector::{get, set};
+use super::vector::{V3, get, set};
 use super::{Hits, Rays, opacity::Through};
 use crate::math::Vec3;
+use crate::math::lanes::{BitLanes, MOST, Words};
 
 /// Paths in flight at once. Batches of 512 to 2048 were within 5 % of each other in a probe of the room of spheres.
 pub(super) const WAVE: usize = 1024;
@@ -75,6 +76,8 @@ pub(super) struct Wave {
     pub(super) shadows: Shadows,
     pub(super) slots: Slots,
     pub(super) through: Through,
+    /// Paths by what they hit: spheres, triangles of the world, instances. Filled by the surface stage.
+    pub(super) by_shape: [Vec<u32>; 3],
     /// Paths by kind of scattering, filled by the sort stage.
     pub(super) by_scatter: [Vec<u32>; 6],
     /// Whether path i goes on.
@@ -156,18 +159,44 @@ impl Surfaces {
 }
 
 impl Shadows {
-    pub(super) fn clear(&mut self) {
-        self.rays.clear();
-        self.radiance.iter_mut().for_each(Vec::clear);
-        self.slot.clear();
+    /// Makes room for n rays, and for the lanes that are written beyond them.
+    pub(super) fn reserve(&mut self, n: usize) {
+        let floats = self.rays.origin.iter_mut().chain(&mut self.rays.dir);
+        for array in floats
+            .chain(&mut self.radiance)
+            .chain([&mut self.rays.t_max])
+        {
+            array.resize(n + MOST, 0.0);
+        }
+        self.slot.resize(n + MOST, 0);
     }
 
-    pub(super) fn push(&mut self, origin: Vec3, dir: Vec3, t_max: f32, radiance: Vec3, slot: u32) {
-        self.rays.push(origin.to_array(), dir.to_array(), t_max);
-        for (array, value) in self.radiance.iter_mut().zip(radiance.to_array()) {
-            array.push(value);
+    /// Keeps the first n rays.
+    pub(super) fn truncate(&mut self, n: usize) {
+        self.rays.truncate(n);
+        self.radiance.iter_mut().for_each(|a| a.truncate(n));
+        self.slot.truncate(n);
+    }
+
+    /// Writes the rays of the lanes whose bits are set from `at` on, in order; returns how many. There is room for as many
+    /// as there are lanes.
+    #[inline(always)]
+    pub(super) fn pack<L: BitLanes>(
+        &mut self,
+        at: usize,
+        chosen: u32,
+        (V3(origin), V3(dir), t_max): (V3<L>, V3<L>, L),
+        V3(radiance): V3<L>,
+        slots: L::Bits,
+    ) -> usize {
+        for axis in 0..3 {
+            origin[axis].pack(chosen, &mut self.rays.origin[axis][at..]);
+            dir[axis].pack(chosen, &mut self.rays.dir[axis][at..]);
+            radiance[axis].pack(chosen, &mut self.radiance[axis][at..]);
         }
-        self.slot.push(slot);
+        t_max.pack(chosen, &mut self.rays.t_max[at..]);
+        slots.pack(chosen, &mut self.slot[at..]);
+        chosen.count_ones() as usize
     }
 }
 

@@ -12,16 +12,16 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 /// Eight f32.
 #[derive(Clone, Copy)]
 #[repr(transparent)]
-pub(crate) struct F32x8(__m256);
+pub(crate) struct F32x8(pub(super) __m256);
 
 /// Eight f64: lanes 0 to 3, lanes 4 to 7.
 #[derive(Clone, Copy)]
-pub(crate) struct F64x8(__m256d, __m256d);
+pub(crate) struct F64x8(pub(super) __m256d, pub(super) __m256d);
 
 /// Eight truth values: all bits or none.
 #[derive(Clone, Copy)]
 #[repr(transparent)]
-pub(crate) struct Mask8(__m256);
+pub(crate) struct Mask8(pub(super) __m256);
 
 macro_rules! operators {
     ($lanes:ident: $($trait:ident::$method:ident $intrinsic:ident),*) => {
@@ -290,7 +290,7 @@ impl WideLanes for F64x8 {
 }
 
 /// For every set of eight lanes: its members, then one that is not, again and again.
-static MEMBERS_FIRST: [[u8; 8]; 256] = members_first();
+pub(super) static MEMBERS_FIRST: [[u8; 8]; 256] = members_first();
 
 const fn members_first() -> [[u8; 8]; 256] {
     let mut table = [[0; 8]; 256];

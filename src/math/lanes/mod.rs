@@ -9,18 +9,25 @@
 //! [`avx2`] or [`avx512`] exists only inside an entry that a [`crate::trace::Isa`] of that level guards**, which is the proof
 //! that the machine has the instructions. The module is private to the crate for that reason.
 //!
-//! Deliberately absent: integers (but for bytes that become numbers), shuffles (but for the one order that traversal
-//! needs), sums over lanes, fused and approximate operations.
+//! What only the stages of tracing need, integers above all, is [`BitLanes`], which sixteen lanes have not.
+//!
+//! Deliberately absent: shuffles (but for the one order that traversal needs), sums over lanes, fused and approximate
+//! operations.
 
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod avx2;
 #[cfg(target_arch = "x86_64")]
+mod avx2_bits;
+#[cfg(target_arch = "x86_64")]
 pub(crate) mod avx512;
+mod bits;
 #[cfg(any(test, not(target_arch = "x86_64")))]
 pub(crate) mod portable;
 mod scalar;
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod sse2;
+#[cfg(target_arch = "x86_64")]
+mod sse2_bits;
 #[cfg(test)]
 mod tests;
 
@@ -30,7 +37,11 @@ pub(crate) use portable as baseline;
 #[cfg(target_arch = "x86_64")]
 pub(crate) use sse2 as baseline;
 
+pub(crate) use bits::{BitLanes, Words};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
+
+/// The widest lanes of all.
+pub(crate) const MOST: usize = 16;
 
 /// Lanes of f32.
 pub(crate) trait Lanes:

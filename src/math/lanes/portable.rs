@@ -1,7 +1,7 @@
 //! Lanes as plain arrays, for machines without a backend of their own: what the compiler makes of them at the target's
 //! baseline.
 
-use super::{Lanes, WideLanes};
+use super::{BitLanes, Lanes, WideLanes, Words, bits};
 use std::array::from_fn;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 
@@ -182,5 +182,94 @@ impl<const N: usize> WideLanes for Doubles<N> {
             any |= x >= 0.0;
         }
         any
+    }
+}
+
+impl<const N: usize> BitLanes for Floats<N> {
+    type Bits = Uints<N>;
+
+    #[inline(always)]
+    fn to_bits(self) -> Uints<N> {
+        Uints(self.0.map(f32::to_bits))
+    }
+    #[inline(always)]
+    fn from_bits(bits: Uints<N>) -> Floats<N> {
+        Floats(bits.0.map(f32::from_bits))
+    }
+    #[inline(always)]
+    fn from_words(words: Uints<N>) -> Floats<N> {
+        Floats(words.0.map(|x| x as f32))
+    }
+    #[inline(always)]
+    fn to_words(self) -> Uints<N> {
+        Uints(self.0.map(|x| x as u32))
+    }
+    #[inline(always)]
+    fn wide_lt(a: Doubles<N>, b: Doubles<N>) -> Truths<N> {
+        Truths(from_fn(|i| u32::from(a.0[i] < b.0[i]).wrapping_neg()))
+    }
+    #[inline(always)]
+    fn gather(from: &[f32], index: &[u32]) -> Floats<N> {
+        Floats(from_fn(|i| from[index[i] as usize]))
+    }
+}
+
+/// Some u32.
+#[derive(Clone, Copy)]
+#[repr(C, align(16))]
+pub(crate) struct Uints<const N: usize>([u32; N]);
+
+impl<const N: usize> Uints<N> {
+    #[inline(always)]
+    fn with(self, other: Uints<N>, f: impl Fn(u32, u32) -> u32) -> Uints<N> {
+        Uints(from_fn(|i| f(self.0[i], other.0[i])))
+    }
+}
+
+impl<const N: usize> Words for Uints<N> {
+    #[inline(always)]
+    fn splat(x: u32) -> Uints<N> {
+        Uints([x; N])
+    }
+    #[inline(always)]
+    fn load(from: &[u32]) -> Uints<N> {
+        let from = &from[..N];
+        Uints(from_fn(|i| from[i]))
+    }
+    #[inline(always)]
+    fn plus(self, other: Uints<N>) -> Uints<N> {
+        self.with(other, u32::wrapping_add)
+    }
+    #[inline(always)]
+    fn times(self, other: Uints<N>) -> Uints<N> {
+        self.with(other, u32::wrapping_mul)
+    }
+    #[inline(always)]
+    fn xor(self, other: Uints<N>) -> Uints<N> {
+        self.with(other, |a, b| a ^ b)
+    }
+    #[inline(always)]
+    fn and(self, other: Uints<N>) -> Uints<N> {
+        self.with(other, |a, b| a & b)
+    }
+    #[inline(always)]
+    fn or(self, other: Uints<N>) -> Uints<N> {
+        self.with(other, |a, b| a | b)
+    }
+    #[inline(always)]
+    fn up<const K: i32>(self) -> Uints<N> {
+        Uints(self.0.map(|x| x << K))
+    }
+    #[inline(always)]
+    fn down<const K: i32>(self) -> Uints<N> {
+        Uints(self.0.map(|x| x >> K))
+    }
+    #[inline(always)]
+    fn gather(from: &[u32], index: &[u32]) -> Uints<N> {
+        Uints(from_fn(|i| from[index[i] as usize]))
+    }
+    #[inline(always)]
+    fn pack(self, chosen: u32, to: &mut [u32]) {
+        bits::pack(&self.0, chosen, to);
     }
 }

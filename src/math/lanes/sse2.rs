@@ -13,17 +13,17 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 /// So many registers of four f32.
 #[derive(Clone, Copy)]
 #[repr(transparent)]
-pub(crate) struct Floats<const R: usize>([__m128; R]);
+pub(crate) struct Floats<const R: usize>(pub(super) [__m128; R]);
 
 /// As many f64, two registers for each of those.
 #[derive(Clone, Copy)]
 #[repr(transparent)]
-pub(crate) struct Doubles<const R: usize>([[__m128d; 2]; R]);
+pub(crate) struct Doubles<const R: usize>(pub(super) [[__m128d; 2]; R]);
 
 /// As many truth values: all bits or none.
 #[derive(Clone, Copy)]
 #[repr(transparent)]
-pub(crate) struct Truths<const R: usize>([__m128; R]);
+pub(crate) struct Truths<const R: usize>(pub(super) [__m128; R]);
 
 /// Four f32.
 pub(crate) type F32x4 = Floats<1>;

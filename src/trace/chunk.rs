@@ -1,0 +1,110 @@
+//! Some paths that a stage works on together, and their elements of SoA arrays.
+
+use super::vector::V3;
+use crate::math::lanes::{BitLanes, MOST, Words};
+
+/// As many paths as there are lanes, by their index. Where there are fewer, the other lanes repeat the last one: they are
+/// computed, and written nowhere.
+pub(super) struct Chunk {
+    index: [u32; MOST],
+    len: usize,
+    /// The paths follow one another, and every lane has one.
+    run: bool,
+}
+
+impl Chunk {
+    /// The first paths of a list that is not empty.
+    #[inline(always)]
+    pub(super) fn new<L: BitLanes>(list: &[u32]) -> Chunk {
+        let len = list.len().min(L::N);
+        let mut index = [0; MOST];
+        for lane in 0..L::N {
+            index[lane] = list[lane.min(len - 1)];
+        }
+        let apart = index[L::N - 1] - index[0];
+        Chunk {
+            index,
+            len,
+            run: len == L::N && apart as usize == L::N - 1,
+        }
+    }
+
+    /// The paths, without repetition.
+    #[inline(always)]
+    pub(super) fn index(&self) -> &[u32] {
+        &self.index[..self.len]
+    }
+
+    /// Bit i: lane i is a path and no repetition.
+    #[inline(always)]
+    pub(super) fn members(&self) -> u32 {
+        (1 << self.len) - 1
+    }
+
+    /// The elements that an array of indices has for the paths, as a chunk of their own.
+    #[inline(always)]
+    pub(super) fn through<L: BitLanes>(&self, indices: &[u32]) -> Chunk {
+        let mut index = [0; MOST];
+        let mut run = self.len == L::N;
+        for lane in 0..L::N {
+            index[lane] = indices[self.index[lane] as usize];
+            run &= index[lane] == index[0].wrapping_add(lane as u32);
+        }
+        Chunk {
+            index,
+            len: self.len,
+            run,
+        }
+    }
+
+    /// The element of one lane.
+    #[inline(always)]
+    pub(super) fn at<T: Copy>(&self, array: &[T], lane: usize) -> T {
+        array[self.index[lane] as usize]
+    }
+
+    #[inline(always)]
+    pub(super) fn lanes<L: BitLanes>(&self, array: &[f32]) -> L {
+        match self.run {
+            true => L::load(&array[self.index[0] as usize..]),
+            false => L::gather(array, &self.index),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn words<L: BitLanes>(&self, array: &[u32]) -> L::Bits {
+        match self.run {
+            true => Words::load(&array[self.index[0] as usize..]),
+            false => Words::gather(array, &self.index),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn vector<L: BitLanes>(&self, arrays: &[Vec<f32>; 3]) -> V3<L> {
+        V3([
+            self.lanes(&arrays[0]),
+            self.lanes(&arrays[1]),
+            self.lanes(&arrays[2]),
+        ])
+    }
+
+    /// Overwrites the paths' elements.
+    #[inline(always)]
+    pub(super) fn put<L: BitLanes>(&self, lanes: L, to: &mut [f32]) {
+        if self.run {
+            return lanes.store(&mut to[self.index[0] as usize..]);
+        }
+        let mut values = [0.0; MOST];
+        lanes.store(&mut values);
+        for (&i, x) in self.index().iter().zip(values) {
+            to[i as usize] = x;
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn put_vector<L: BitLanes>(&self, V3(v): V3<L>, to: &mut [Vec<f32>; 3]) {
+        for (lanes, to) in v.into_iter().zip(to) {
+            self.put(lanes, to);
+        }
+    }
+}

@@ -1,0 +1,240 @@
+//! Sphere lights: a direction in the cone that a sphere fills, and its density.
+
+use super::{LightSample, SHORT, mean};
+use crate::flat::FlatScene;
+use crate::math::Vec3;
+use crate::math::lanes::{BitLanes, MOST, WideLanes};
+use crate::trace::vector::{V3, basis, sin_cos_turns};
+use std::f64::consts::{PI, TAU};
+
+/// Area times mean radiance, as in the table.
+fn sphere_weight(radius: f64, radiance: Vec3) -> f64 {
+    4.0 * PI * radius * radius * mean(radiance)
+}
+
+/// The directions from a point in which a sphere shows its emitting side, in each lane.
+struct Cone<L: BitLanes> {
+    /// From the point to the centre.
+    to_center: [L::Wide; 3],
+    radius: L::Wide,
+    /// 1 − cos of the half angle; 2, the whole sphere of directions, inside an inverted sphere.
+    one_minus_cos: L::Wide,
+    /// −1 where the sphere is inverted, else 1.
+    side: L::Wide,
+    /// Bit i: lane i is on the side that emits. The other lanes are meaningless.
+    valid: u32,
+}
+
+/// Spheres in lanes.
+struct Chosen<W> {
+    center: [W; 3],
+    radius: W,
+    /// 2 where the sphere is inverted, else 0.
+    inverted: W,
+    /// Bit i: the sphere of lane i is inverted.
+    inverted_bits: u32,
+}
+
+impl<W: WideLanes> Chosen<W> {
+    #[inline(always)]
+    fn of<L: BitLanes<Wide = W>>(scene: &FlatScene, spheres: &[u32; MOST]) -> Chosen<W> {
+        let s = &scene.spheres;
+        let mut numbers = [[0.0; MOST]; 5];
+        let mut inverted_bits = 0;
+        for lane in 0..L::N {
+            let i = spheres[lane] as usize;
+            let [x, y, z] = s.center[i];
+            let inverted = s.inverted[i];
+            inverted_bits |= u32::from(inverted) << lane;
+            let all = [x, y, z, s.radius[i], if inverted { 2.0 } else { 0.0 }];
+            for (array, x) in numbers.iter_mut().zip(all) {
+                array[lane] = x;
+            }
+        }
+        let [x, y, z, radius, inverted] = &numbers;
+        Chosen {
+            center: [W::load(x), W::load(y), W::load(z)],
+            radius: W::load(radius),
+            inverted: W::load(inverted),
+            inverted_bits,
+        }
+    }
+}
+
+impl<L: BitLanes> Cone<L> {
+    /// 1 − cos θ = s² / (1 + √(1 − s²)), s = r / d, has no cancellation at any distance; d² − r² is (d − r)(d + r).
+    #[inline(always)]
+    fn new(V3(from): V3<L>, sphere: Chosen<L::Wide>) -> Cone<L> {
+        let [zero, one] = [L::Wide::splat(0.0), L::Wide::splat(1.0)];
+        let (c, radius) = (sphere.center, sphere.radius);
+        let to_center = [
+            c[0] - from[0].widen(),
+            c[1] - from[1].widen(),
+            c[2] - from[2].widen(),
+        ];
+        let d2 = dot(to_center, to_center);
+        let d = d2.sqrt();
+        let gap = (d - radius) * (d + radius);
+        let outside = L::bits(L::wide_lt(zero, gap));
+        let cap = (radius * radius / d2) / (one + (gap / d2).sqrt());
+        Cone {
+            to_center,
+            radius,
+            one_minus_cos: sphere.inverted.positive_or(cap),
+            side: one - sphere.inverted,
+            valid: (outside ^ sphere.inverted_bits) & ((1 << L::N) - 1),
+        }
+    }
+
+    #[inline(always)]
+    fn pdf(&self) -> L::Wide {
+        L::Wide::splat(1.0) / (L::Wide::splat(TAU) * self.one_minus_cos)
+    }
+
+    /// A unit direction, uniform in the cone.
+    #[inline(always)]
+    fn sample(&self, u: [L; 2]) -> V3<L> {
+        let wide = L::Wide::splat;
+        let axis = V3(self.to_center.map(L::narrow)).unit();
+        let axis = V3::select(axis.finite(), axis, V3::splat([0.0, 0.0, 1.0]));
+        let height = self.one_minus_cos * u[0].widen();
+        let cos = L::narrow(wide(1.0) - height);
+        let sin = L::narrow((height * (wide(2.0) - height)).sqrt());
+        let (sin_phi, cos_phi) = sin_cos_turns(u[1]);
+        let (s, t) = basis(axis);
+        (s * (sin * cos_phi) + t * (sin * sin_phi) + axis * cos).unit()
+    }
+
+    /// Distance to the emitting side along the rounded direction, as the kernel will find it; a direction that rounding
+    /// puts beside the rim ends where it comes nearest.
+    #[inline(always)]
+    fn distance(&self, V3(dir): V3<L>) -> L {
+        let d = dir.map(|x| x.widen());
+        let a = dot(d, d);
+        let to = self.to_center;
+        let b = dot(to, d) / a;
+        let beside = [to[0] - d[0] * b, to[1] - d[1] * b, to[2] - d[2] * b];
+        let inside = self.radius * self.radius - dot(beside, beside);
+        let half = (inside.max(L::Wide::splat(0.0)) / a).sqrt();
+        L::narrow(b - half * self.side)
+    }
+}
+
+/// Samples a sphere of the scene, a light, in each lane.
+#[inline(always)]
+pub(super) fn sample_spheres<L: BitLanes>(
+    scene: &FlatScene,
+    from: V3<L>,
+    spheres: &[u32; MOST],
+    u: [L; 2],
+) -> LightSample<L> {
+    let cone = Cone::new(from, Chosen::of::<L>(scene, spheres));
+    let dir = cone.sample(u);
+    let (mut weights, mut radiances) = ([0.0; MOST], [[0.0; MOST]; 3]);
+    for lane in 0..L::N {
+        let sphere = spheres[lane] as usize;
+        let material = scene.spheres.material[sphere].0 as usize;
+        let radiance = scene.materials[material].emission;
+        weights[lane] = sphere_weight(scene.spheres.radius[sphere], Vec3::from(radiance));
+        for (array, x) in radiances.iter_mut().zip(radiance) {
+            array[lane] = x;
+        }
+    }
+    let total = L::Wide::splat(scene.lights.total());
+    let pdf = cone.pdf() * L::Wide::load(&weights) / total;
+    LightSample {
+        dir,
+        t_max: cone.distance(dir) * L::splat(SHORT),
+        radiance: V3(radiances.map(|array| L::load(&array))),
+        pdf: L::narrow(pdf),
+        punctual: 0,
+        valid: cone.valid,
+    }
+}
+
+/// Density of sampling a sphere from a point; 0 on the side that does not emit.
+pub(super) fn sphere_pdf(scene: &FlatScene, from: V3<f32>, sphere: u32, radiance: Vec3) -> f32 {
+    let cone = Cone::new(from, Chosen::of::<f32>(scene, &[sphere; MOST]));
+    if cone.valid == 0 {
+        return 0.0;
+    }
+    (cone.pdf() * sphere_weight(cone.radius, radiance) / scene.lights.total()) as f32
+}
+
+#[inline(always)]
+fn dot<W: WideLanes>(a: [W; 3], b: [W; 3]) -> W {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::DVec3;
+    use crate::trace::Sampler::Independent;
+    use crate::trace::sampler::{Pair, sample_pair};
+    use crate::trace::test_support::chi_squared;
+
+    fn numbers(n: u32) -> impl Iterator<Item = [f32; 2]> {
+        (0..n).map(|i| sample_pair(Independent, 5, i, Pair::Pixel))
+    }
+
+    /// The cone of a sphere of radius 1 about the origin.
+    fn cone(from: Vec3, inverted: bool) -> Option<Cone<f32>> {
+        let sphere = Chosen {
+            center: [0.0; 3],
+            radius: 1.0,
+            inverted: if inverted { 2.0 } else { 0.0 },
+            inverted_bits: u32::from(inverted),
+        };
+        let cone = Cone::new(V3::from(from), sphere);
+        (cone.valid == 1).then_some(cone)
+    }
+
+    /// The relative error of 1 − cos against f64 without cancellation, from nearly touching to very far.
+    #[test]
+    fn cone_is_exact_at_every_distance() {
+        for k in 0..30 {
+            let distance = 1.0 + f64::powi(10.0, k - 6);
+            let from = Vec3::new(0.0, 0.0, distance as f32);
+            let cone = cone(from, false).expect("outside");
+            let s = 1.0 / f64::from(from.z);
+            let want = 2.0 * (0.5 * s.asin()).sin().powi(2);
+            assert!(
+                (cone.one_minus_cos - want).abs() <= 1e-9 * want,
+                "d = {distance}"
+            );
+        }
+        assert!(cone(Vec3::ZERO, false).is_none());
+        assert!(cone(Vec3::splat(2.0), true).is_none());
+    }
+
+    #[test]
+    fn sphere_directions_are_uniform_in_the_cone() {
+        let cases = [
+            (Vec3::new(0.3, -2.0, 0.7), false),
+            (Vec3::new(900.0, 5.0, -70.0), false),
+            (Vec3::new(0.1, 0.2, 0.3), true),
+        ];
+        for (from, inverted) in cases {
+            let cone = cone(from, inverted).expect("emits");
+            let axis = V3::from(DVec3::from(cone.to_center).as_vec3()).unit();
+            let (s, t) = basis(axis);
+            let [axis, s, t] = [axis, s, t].map(Vec3::from);
+            let z = chi_squared(
+                20,
+                32,
+                200_000,
+                numbers(200_000).map(|u| {
+                    let dir = Vec3::from(cone.sample(u));
+                    assert!((dir.length() - 1.0).abs() < 3e-7);
+                    // 1 − cos as half the squared chord: exact for narrow cones.
+                    let height =
+                        f64::from((dir - axis).length_squared()) / 2.0 / cone.one_minus_cos;
+                    let phi = f64::from(dir.dot(t)).atan2(f64::from(dir.dot(s))) / TAU;
+                    [height, phi.rem_euclid(1.0)]
+                }),
+            );
+            assert!(z.abs() < 4.0, "z = {z}");
+        }
+    }
+}
