@@ -29,6 +29,27 @@ impl Chunk {
         }
     }
 
+    /// The paths from `first` on, below `end`.
+    #[inline(always)]
+    pub(super) fn range<L: BitLanes>(first: usize, end: usize) -> Chunk {
+        let len = (end - first).min(L::N);
+        let mut index = [0; MOST];
+        for lane in 0..L::N {
+            index[lane] = (first + lane.min(len - 1)) as u32;
+        }
+        Chunk {
+            index,
+            len,
+            run: len == L::N,
+        }
+    }
+
+    /// A list, chunk by chunk.
+    #[inline(always)]
+    pub(super) fn all<L: BitLanes>(list: &[u32]) -> impl Iterator<Item = Chunk> {
+        list.chunks(L::N).map(Chunk::new::<L>)
+    }
+
     /// The paths, without repetition.
     #[inline(always)]
     pub(super) fn index(&self) -> &[u32] {

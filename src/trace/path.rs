@@ -4,9 +4,9 @@ use super::attributes::{Place, emitted};
 use super::camera::{ImageSample, generate, image_direction};
 use super::light::{light_pdf, towards};
 use super::opacity::{pass_paths, pass_shadows, random};
-use super::sampler::{Pair, pixel_key, sample_pair};
+use super::sampler::pixel_key;
 use super::scatter::{Bounce, mis_weight};
-use super::stages::{sample_bsdf, sample_lights, surface};
+use super::stages::{compact, roulette, sample_bsdf, sample_lights, surface};
 use super::surface::color_by_vertices;
 use super::vector::{get, set, unit};
 use super::wave::{WAVE, Wave};
@@ -135,7 +135,7 @@ fn trace_paths(wave: &mut Wave, scene: &FlatScene, options: &TraceOptions, rays:
             return;
         }
         leave(wave, bounce, rays);
-        wave.paths.compact(&wave.alive);
+        compact(options.isa, wave);
     }
 }
 
@@ -169,7 +169,6 @@ pub(super) fn leave(wave: &mut Wave, bounce: Bounce, rays: &mut [u64; 2]) {
         options,
         index,
     } = bounce;
-    sort_by_scatter(wave, scene);
     if options.nee && scene.needs.lights && (scene.needs.diffuse || scene.needs.plastic) {
         sample_lights(wave, bounce);
         rays[1] += find_blocked(wave, scene, options);
@@ -210,20 +209,19 @@ fn kinds(needs: &Needs) -> impl Iterator<Item = Scatter> {
 fn emission(wave: &mut Wave, bounce: Bounce) {
     let Bounce { scene, options, .. } = bounce;
     let background = Vec3::from(scene.background);
-    for i in 0..wave.paths.len() {
+    if scene.needs.background {
+        for &i in &wave.groups.missed {
+            let slot = wave.paths.slot[i as usize] as usize;
+            let throughput = get(&wave.paths.throughput, i as usize);
+            wave.slots.add(slot, throughput * background);
+        }
+    }
+    for &i in &wave.groups.at_emitters {
+        let i = i as usize;
         let slot = wave.paths.slot[i] as usize;
         let throughput = get(&wave.paths.throughput, i);
-        if wave.hits.prim[i] == Hits::NONE {
-            if scene.needs.background {
-                wave.slots.add(slot, throughput * background);
-            }
-            continue;
-        }
         let material = &scene.materials[wave.surfaces.material[i] as usize];
         let mean = Vec3::from(material.emission);
-        if mean.max_element() <= 0.0 {
-            continue;
-        }
         let dir = get(&wave.paths.rays.dir, i);
         let ng = get(&wave.surfaces.ng, i);
         let (ng, mean) = match material.two_sided {
@@ -249,20 +247,6 @@ fn emission(wave: &mut Wave, bounce: Bounce) {
     }
 }
 
-/// Groups the paths that hit something by how the surface scatters.
-fn sort_by_scatter(wave: &mut Wave, scene: &FlatScene) {
-    wave.by_scatter.iter_mut().for_each(Vec::clear);
-    wave.alive.clear();
-    for i in 0..wave.paths.len() {
-        let scatter = match wave.hits.prim[i] {
-            Hits::NONE => Scatter::Nothing,
-            _ => scene.materials[wave.surfaces.material[i] as usize].scatter,
-        };
-        wave.alive.push(scatter != Scatter::Nothing);
-        wave.by_scatter[scatter as usize].push(i as u32);
-    }
-}
-
 /// Adds the light samples that nothing blocks.
 fn add_lights(wave: &mut Wave) {
     let Wave { shadows, slots, .. } = wave;
@@ -270,31 +254,6 @@ fn add_lights(wave: &mut Wave) {
         if !shadows.blocked[i] {
             slots.add(shadows.slot[i] as usize, get(&shadows.radiance, i));
         }
-    }
-}
-
-/// Ends paths that carry little, and raises the others by as much (Arvo and Kirk 1990). A throughput that a refraction
-/// shrank only until the path leaves the medium is not held against it.
-fn roulette(wave: &mut Wave, bounce: Bounce) {
-    for i in 0..wave.paths.len() {
-        if !wave.alive[i] {
-            continue;
-        }
-        let throughput = get(&wave.paths.throughput, i);
-        let survival = throughput.max_element() * wave.paths.eta2[i];
-        if survival >= 1.0 {
-            continue;
-        }
-        let slot = wave.paths.slot[i] as usize;
-        let (key, sample) = (wave.slots.key[slot], wave.slots.sample[slot]);
-        let [u, _] = sample_pair(
-            bounce.options.sampler,
-            key,
-            sample,
-            Pair::Roulette(bounce.index),
-        );
-        wave.alive[i] = u < survival;
-        set(&mut wave.paths.throughput, i, throughput * (1.0 / survival));
     }
 }
 

@@ -4,6 +4,7 @@
 //! film took.
 
 use super::path::{arrive, identity, leave, start_paths};
+use super::stages::compact;
 use super::scatter::Bounce;
 use super::vector::get;
 use super::wave::Wave;
@@ -157,7 +158,7 @@ pub fn replay(
             vertex.light = light_point(&wave);
             vertex.radiance = gathered(&wave);
             vertex.fate = fate(&wave, before);
-            wave.paths.compact(&wave.alive);
+            compact(options.isa, &mut wave);
         }
         vertices.push(vertex);
     }

@@ -164,13 +164,13 @@ pub(super) fn sample_lights<L: BitLanes>(wave: &mut Wave, bounce: Bounce) {
     let kinds = [Scatter::Diffuse, Scatter::Plastic];
     let most: usize = kinds
         .iter()
-        .map(|&k| wave.by_scatter[k as usize].len())
+        .map(|&k| wave.groups.by_scatter[k as usize].len())
         .sum();
     wave.shadows.reserve(most);
     let mut len = 0;
     for kind in kinds {
-        for first in (0..wave.by_scatter[kind as usize].len()).step_by(L::N) {
-            let chunk = Chunk::new::<L>(&wave.by_scatter[kind as usize][first..]);
+        for first in (0..wave.groups.by_scatter[kind as usize].len()).step_by(L::N) {
+            let chunk = Chunk::new::<L>(&wave.groups.by_scatter[kind as usize][first..]);
             len += sample_light::<L>(wave, bounce, kind, &chunk, len);
         }
     }
@@ -233,7 +233,7 @@ fn light_from<L: BitLanes>(
 }
 
 /// Where the random numbers of paths come from.
-struct Numbers<L: BitLanes> {
+pub(super) struct Numbers<L: BitLanes> {
     sampler: super::Sampler,
     key: L::Bits,
     sample: L::Bits,
@@ -241,7 +241,7 @@ struct Numbers<L: BitLanes> {
 
 impl<L: BitLanes> Numbers<L> {
     #[inline(always)]
-    fn new(wave: &Wave, bounce: Bounce, chunk: &Chunk) -> Numbers<L> {
+    pub(super) fn new(wave: &Wave, bounce: Bounce, chunk: &Chunk) -> Numbers<L> {
         let slots = chunk.through::<L>(&wave.paths.slot);
         Numbers {
             sampler: bounce.options.sampler,
@@ -251,7 +251,7 @@ impl<L: BitLanes> Numbers<L> {
     }
 
     #[inline(always)]
-    fn pair(&self, pair: Pair) -> [L; 2] {
+    pub(super) fn pair(&self, pair: Pair) -> [L; 2] {
         sample_pairs(self.sampler, self.key, self.sample, pair)
     }
 }
@@ -259,8 +259,8 @@ impl<L: BitLanes> Numbers<L> {
 /// Samples the bsdf of every path of one kind: its next ray, its throughput, or its end.
 #[inline(always)]
 pub(super) fn sample_bsdf<L: BitLanes>(wave: &mut Wave, bounce: Bounce, kind: Scatter) {
-    for first in (0..wave.by_scatter[kind as usize].len()).step_by(L::N) {
-        let chunk = Chunk::new::<L>(&wave.by_scatter[kind as usize][first..]);
+    for first in (0..wave.groups.by_scatter[kind as usize].len()).step_by(L::N) {
+        let chunk = Chunk::new::<L>(&wave.groups.by_scatter[kind as usize][first..]);
         let local = Local::<L>::new(wave, &chunk);
         let numbers = || Numbers::<L>::new(wave, bounce, &chunk);
         let scattered = match kind {

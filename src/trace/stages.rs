@@ -5,6 +5,7 @@
     reason = "an entry is called on the proof that the machine has its instructions"
 )]
 
+use super::roulette;
 use super::scatter::{self, Bounce};
 use super::surface;
 use super::wave::Wave;
@@ -32,6 +33,18 @@ macro_rules! stages {
         #[inline(never)]
         pub(super) fn sample_bsdf(wave: &mut Wave, bounce: Bounce, kind: Scatter) {
             scatter::sample_bsdf::<$lanes>(wave, bounce, kind);
+        }
+
+        $(#[target_feature(enable = $features)])?
+        #[inline(never)]
+        pub(super) fn roulette(wave: &mut Wave, bounce: Bounce) {
+            roulette::roulette::<$lanes>(wave, bounce);
+        }
+
+        $(#[target_feature(enable = $features)])?
+        #[inline(never)]
+        pub(super) fn compact(wave: &mut Wave) {
+            wave.paths.compact::<$lanes>(&wave.alive);
         }
     };
 }
@@ -78,4 +91,14 @@ pub(super) fn sample_lights(wave: &mut Wave, bounce: Bounce) {
 /// [`scatter::sample_bsdf`].
 pub(super) fn sample_bsdf(wave: &mut Wave, bounce: Bounce, kind: Scatter) {
     on_isa!(bounce.options.isa, sample_bsdf(wave, bounce, kind));
+}
+
+/// [`roulette::roulette`].
+pub(super) fn roulette(wave: &mut Wave, bounce: Bounce) {
+    on_isa!(bounce.options.isa, roulette(wave, bounce));
+}
+
+/// [`super::wave::Paths::compact`], by what is alive.
+pub(super) fn compact(isa: Isa, wave: &mut Wave) {
+    on_isa!(isa, compact(wave));
 }

@@ -2,6 +2,7 @@
 
 use super::attributes::{Place, texture_color, vertex_color};
 use super::chunk::Chunk;
+use super::groups::{Shape, group};
 use super::vector::{V3, get, set};
 use super::wave::{Surfaces, Wave};
 use super::{Hits, Rays, spawn};
@@ -16,65 +17,54 @@ struct Points<L> {
     ns: V3<L>,
 }
 
-/// Fills `wave.surfaces` for every path that hit something.
+/// Fills `wave.surfaces` for every path that hit something, and groups the paths.
 #[inline(always)]
 pub(super) fn surface<L: BitLanes>(wave: &mut Wave, scene: &FlatScene) {
+    group(wave, scene);
     let Wave {
         paths,
         hits,
         surfaces,
-        by_shape,
+        groups,
         ..
     } = wave;
-    surfaces.resize(paths.len());
-    by_shape.iter_mut().for_each(Vec::clear);
-    for i in 0..paths.len() {
-        if hits.prim[i] != Hits::NONE {
-            by_shape[Shape::of(hits, i) as usize].push(i as u32);
-        }
-    }
-    for first in (0..by_shape[Shape::Sphere as usize].len()).step_by(L::N) {
-        let chunk = Chunk::new::<L>(&by_shape[Shape::Sphere as usize][first..]);
+    for chunk in Chunk::all::<L>(&groups.by_shape[Shape::Sphere as usize]) {
         let points = on_spheres::<L>(&scene.spheres, &paths.rays, hits, &chunk);
         write(surfaces, &chunk, &points);
     }
-    for first in (0..by_shape[Shape::Triangle as usize].len()).step_by(L::N) {
-        let chunk = Chunk::new::<L>(&by_shape[Shape::Triangle as usize][first..]);
+    for chunk in Chunk::all::<L>(&groups.by_shape[Shape::Triangle as usize]) {
         let points = on_triangles::<L>(&scene.world, hits, &chunk);
         write(surfaces, &chunk, &points);
     }
-    for &i in &by_shape[Shape::Instance as usize] {
-        let chunk = Chunk::new::<f32>(&[i]);
+    for chunk in Chunk::all::<f32>(&groups.by_shape[Shape::Instance as usize]) {
         write(surfaces, &chunk, &on_instance(scene, hits, &chunk));
     }
-    for &i in by_shape.iter().flatten() {
-        let i = i as usize;
-        let (uv, material) = look_up(scene, hits, &surfaces.ng, i);
-        surfaces.uv[0][i] = uv[0];
-        surfaces.uv[1][i] = uv[1];
-        surfaces.material[i] = material;
-        let color = color(scene, material, uv, hits, i);
-        set(&mut surfaces.color, i, color);
+    if scene.needs.uvs || scene.needs.textures {
+        look_up(surfaces, scene, hits, groups.by_shape.iter().flatten());
     }
 }
 
-/// What a hit is on.
-#[derive(Clone, Copy)]
-enum Shape {
-    Sphere,
-    Triangle,
-    Instance,
-}
-
-impl Shape {
-    #[inline(always)]
-    fn of(hits: &Hits, i: usize) -> Shape {
-        if hits.prim[i] & Spheres::TAG != 0 {
-            Shape::Sphere
-        } else if hits.instance[i] == Hits::WORLD {
-            Shape::Triangle
-        } else {
-            Shape::Instance
+/// Texture coordinates, and the colours of textures.
+#[inline(never)]
+fn look_up<'a>(
+    surfaces: &mut Surfaces,
+    scene: &FlatScene,
+    hits: &Hits,
+    paths: impl Iterator<Item = &'a u32>,
+) {
+    for &i in paths {
+        let i = i as usize;
+        let uv = coordinates(scene, hits, get(&surfaces.ng, i), i);
+        surfaces.uv[0][i] = uv[0];
+        surfaces.uv[1][i] = uv[1];
+        let material = &scene.materials[surfaces.material[i] as usize];
+        if material.scatter == Scatter::Nothing {
+            continue;
+        }
+        if let ColorSource::Texture { texture, factor } = material.color {
+            let place = Place::of_hit(hits, i, uv);
+            let color = Vec3::from(factor) * texture_color(scene, texture, &place);
+            set(&mut surfaces.color, i, color);
         }
     }
 }
@@ -233,22 +223,6 @@ fn on_spheres<L: BitLanes>(
     }
 }
 
-/// Texture coordinates and material of a hit.
-#[inline(always)]
-fn look_up(scene: &FlatScene, hits: &Hits, ng: &[Vec<f32>; 3], i: usize) -> ([f32; 2], u32) {
-    let prim = hits.prim[i];
-    let material = match Shape::of(hits, i) {
-        Shape::Sphere => scene.spheres.material[(prim & !Spheres::TAG) as usize].0,
-        Shape::Triangle => scene.world.shading.material[prim as usize],
-        Shape::Instance => {
-            let instance = &scene.instances[hits.instance[i] as usize];
-            let slot = scene.local[instance.geometry as usize].shading.material[prim as usize];
-            scene.instance_materials[(instance.materials + slot) as usize].0
-        }
-    };
-    (coordinates(scene, hits, get(ng, i), i), material)
-}
-
 /// Texture coordinates of a hit with geometric normal `ng`; 0 where nothing asks for them.
 #[inline(always)]
 fn coordinates(scene: &FlatScene, hits: &Hits, ng: Vec3, i: usize) -> [f32; 2] {
@@ -286,19 +260,4 @@ fn sphere_uv(spheres: &Spheres, s: usize, n: Vec3) -> [f32; 2] {
         (0.5 + atan2(x, z) / TAU) as f32,
         (1.0 - acos(y) / PI) as f32,
     ]
-}
-
-#[inline(always)]
-fn color(scene: &FlatScene, material: u32, uv: [f32; 2], hits: &Hits, i: usize) -> Vec3 {
-    let material = &scene.materials[material as usize];
-    if material.scatter == Scatter::Nothing {
-        return Vec3::ZERO;
-    }
-    match material.color {
-        ColorSource::Constant(c) => Vec3::from(c),
-        ColorSource::Texture { texture, factor } => {
-            let place = Place::of_hit(hits, i, uv);
-            Vec3::from(factor) * texture_color(scene, texture, &place)
-        }
-    }
 }

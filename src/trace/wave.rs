@@ -1,5 +1,6 @@
 //! The wave: a batch of paths in SoA path state, all at the same bounce.
 
+use super::groups::Groups;
 use super::vector::{V3, get, set};
 use super::{Hits, Rays, opacity::Through};
 use crate::math::Vec3;
@@ -76,10 +77,7 @@ pub(super) struct Wave {
     pub(super) shadows: Shadows,
     pub(super) slots: Slots,
     pub(super) through: Through,
-    /// Paths by what they hit: spheres, triangles of the world, instances. Filled by the surface stage.
-    pub(super) by_shape: [Vec<u32>; 3],
-    /// Paths by kind of scattering, filled by the sort stage.
-    pub(super) by_scatter: [Vec<u32>; 6],
+    pub(super) groups: Groups,
     /// Whether path i goes on.
     pub(super) alive: Vec<bool>,
 }
@@ -121,28 +119,45 @@ impl Paths {
     }
 
     /// Keeps the paths that `alive` says, in order.
-    #[inline]
-    pub(super) fn compact(&mut self, alive: &[bool]) {
-        let floats = self
-            .rays
-            .origin
-            .iter_mut()
-            .chain(&mut self.rays.dir)
-            .chain(&mut self.throughput);
+    #[inline(always)]
+    pub(super) fn compact<L: BitLanes>(&mut self, alive: &[bool]) {
+        let floats = self.rays.origin.iter_mut().chain(&mut self.rays.dir);
+        let floats = floats.chain(&mut self.throughput);
         for array in floats.chain([&mut self.rays.t_max, &mut self.pdf, &mut self.eta2]) {
-            keep(array, alive);
+            keep(array, alive, L::N, |array, at, chosen, to| {
+                L::load(&array[at..]).pack(chosen, &mut array[to..]);
+            });
         }
-        keep(&mut self.slot, alive);
+        keep(&mut self.slot, alive, L::N, |array, at, chosen, to| {
+            <L::Bits as Words>::load(&array[at..]).pack(chosen, &mut array[to..]);
+        });
     }
 }
 
-fn keep<T: Copy>(array: &mut Vec<T>, alive: &[bool]) {
-    let mut n = 0;
-    for (i, &alive) in alive.iter().enumerate() {
-        array[n] = array[i];
-        n += usize::from(alive);
+/// Keeps the elements that `alive` says. `pack` writes those of `n` elements whose bits are set to an earlier place, or where
+/// they are.
+#[inline(always)]
+fn keep<T: Copy>(
+    array: &mut Vec<T>,
+    alive: &[bool],
+    n: usize,
+    pack: impl Fn(&mut [T], usize, u32, usize),
+) {
+    let mut to = 0;
+    for (chunk, alive) in alive.chunks(n).enumerate() {
+        let at = chunk * n;
+        let chosen = (0..alive.len()).fold(0, |bits, i| bits | u32::from(alive[i]) << i);
+        if alive.len() == n {
+            pack(array, at, chosen, to);
+            to += chosen.count_ones() as usize;
+            continue;
+        }
+        for i in (0..alive.len()).filter(|&i| alive[i]) {
+            array[to] = array[at + i];
+            to += 1;
+        }
     }
-    array.truncate(n);
+    array.truncate(to);
 }
 
 impl Surfaces {
