@@ -1,12 +1,15 @@
 //! Some paths that a stage works on together, and their elements of SoA arrays.
 
 use super::vector::V3;
-use crate::math::lanes::{BitLanes, MOST, Words};
+use crate::math::lanes::{BitLanes, Words};
+
+/// The widest lanes of the stages: AVX-512 takes AVX2's.
+pub(super) const WIDEST: usize = 8;
 
 /// As many paths as there are lanes, by their index. Where there are fewer, the other lanes repeat the last one: they are
 /// computed, and written nowhere.
 pub(super) struct Chunk {
-    index: [u32; MOST],
+    index: [u32; WIDEST],
     len: usize,
     /// The paths follow one another, and every lane has one.
     run: bool,
@@ -17,7 +20,7 @@ impl Chunk {
     #[inline(always)]
     pub(super) fn new<L: BitLanes>(list: &[u32]) -> Chunk {
         let len = list.len().min(L::N);
-        let mut index = [0; MOST];
+        let mut index = [0; WIDEST];
         for lane in 0..L::N {
             index[lane] = list[lane.min(len - 1)];
         }
@@ -33,7 +36,7 @@ impl Chunk {
     #[inline(always)]
     pub(super) fn range<L: BitLanes>(first: usize, end: usize) -> Chunk {
         let len = (end - first).min(L::N);
-        let mut index = [0; MOST];
+        let mut index = [0; WIDEST];
         for lane in 0..L::N {
             index[lane] = (first + lane.min(len - 1)) as u32;
         }
@@ -65,7 +68,7 @@ impl Chunk {
     /// The elements that an array of indices has for the paths, as a chunk of their own.
     #[inline(always)]
     pub(super) fn through<L: BitLanes>(&self, indices: &[u32]) -> Chunk {
-        let mut index = [0; MOST];
+        let mut index = [0; WIDEST];
         let mut run = self.len == L::N;
         for lane in 0..L::N {
             index[lane] = indices[self.index[lane] as usize];
@@ -115,7 +118,7 @@ impl Chunk {
         if self.run {
             return lanes.store(&mut to[self.index[0] as usize..]);
         }
-        let mut values = [0.0; MOST];
+        let mut values = [0.0; WIDEST];
         lanes.store(&mut values);
         for (&i, x) in self.index().iter().zip(values) {
             to[i as usize] = x;

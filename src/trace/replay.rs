@@ -4,8 +4,8 @@
 //! film took.
 
 use super::path::{arrive, identity, leave, start_paths};
-use super::stages::compact;
 use super::scatter::Bounce;
+use super::stages::compact;
 use super::vector::get;
 use super::wave::Wave;
 use super::{Hits, Rect, TraceOptions};

@@ -3,7 +3,7 @@
 //! Weights are f cos θ / pdf in closed form: a Lambert sample multiplies the throughput by the albedo and nothing
 //! else, so that a furnace is exact in every sample.
 
-use super::chunk::Chunk;
+use super::chunk::{Chunk, WIDEST};
 use super::fresnel::{dielectrics, metal};
 use super::light::{LightSample, sample_lights as sample_table};
 use super::sampler::{Pair, sample_pairs};
@@ -12,7 +12,7 @@ use super::vector::{V3, cosine_hemisphere, reflect};
 use super::wave::Wave;
 use super::{Fresnel, TraceOptions};
 use crate::flat::{FlatScene, Scatter};
-use crate::math::lanes::{BitLanes, Lanes, MOST};
+use crate::math::lanes::{BitLanes, Lanes};
 use std::f32::consts::FRAC_1_PI;
 
 /// What every stage of a bounce is lent.
@@ -124,7 +124,7 @@ impl<L: BitLanes> Plastic<L> {
     #[inline(always)]
     fn new(bounce: Bounce, wave: &Wave, chunk: &Chunk, local: &Local<L>) -> Plastic<L> {
         let mode = bounce.options.fresnel;
-        let [mut iors, mut reflectances] = [[0.0; MOST]; 2];
+        let [mut iors, mut reflectances] = [[0.0; WIDEST]; 2];
         for lane in 0..L::N {
             let material =
                 &bounce.scene.materials[chunk.at(&wave.surfaces.material, lane) as usize];
@@ -133,18 +133,18 @@ impl<L: BitLanes> Plastic<L> {
         let (ior, internal) = (L::load(&iors), L::load(&reflectances));
         let one = L::splat(1.0);
         let (coat, _) = dielectrics(mode, local.incidence(), ior);
-        let V3(color) = local.color;
         let n2 = ior * ior;
-        let base = color.map(|c| c / ((one - c * internal) * n2));
+        let inner = V3::splat([1.0; 3]) - local.color * internal;
+        let base = local.color / (inner * n2);
         // The base sends back about (1 − F) a (1 − F_int) / (1 − a F_int) of what comes.
-        let [r, g, b] = base.map(|c| c * n2 * (one - internal));
+        let V3([r, g, b]) = base * n2 * (one - internal);
         let base_power = (one - coat) * r.max(g.max(b));
         let share = coat / (coat + base_power);
         Plastic {
             mode,
             ior,
             coat,
-            base: V3(base),
+            base,
             coat_share: L::select(L::splat(0.0).lt(base_power), share, one),
         }
     }
@@ -206,7 +206,7 @@ fn sample_light<L: BitLanes>(
         weight = mis_weight(light.pdf, share * cos * per_pi);
     }
     if light.punctual != 0 {
-        let mut extended = [0.0; MOST];
+        let mut extended = [0.0; WIDEST];
         (0..L::N).for_each(|i| extended[i] = (!light.punctual >> i & 1) as f32);
         let extended = L::splat(0.0).lt(L::load(&extended));
         weight = L::select(extended, weight, L::splat(1.0));
@@ -337,7 +337,7 @@ fn sample_glass<L: BitLanes>(
     local: &Local<L>,
     lobe: L,
 ) -> Scattered<L> {
-    let mut iors = [0.0; MOST];
+    let mut iors = [0.0; WIDEST];
     for lane in 0..L::N {
         let material = chunk.at(&wave.surfaces.material, lane) as usize;
         iors[lane] = bounce.scene.materials[material].ior;
@@ -375,7 +375,7 @@ fn sample_plastic<L: BitLanes>(
     let share = one - plastic.coat_share;
     let dir = cosine_hemisphere(local.ns, u);
     let cos = local.cosine(dir);
-    let base = V3(plastic.eval_base(cos).0.map(|c| c / share));
+    let base = plastic.eval_base(cos) / share;
     let base = V3::select(zero.lt(cos), base, V3::splat([0.0; 3]));
     Scattered {
         dir: V3::select(coated, local.mirror(), dir),

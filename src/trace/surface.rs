@@ -1,13 +1,13 @@
 //! Surface: where a path is, from its hit and the cold arrays. Attributes are read once, for the closest hit only.
 
 use super::attributes::{Place, texture_color, vertex_color};
-use super::chunk::Chunk;
+use super::chunk::{Chunk, WIDEST};
 use super::groups::{Shape, group};
 use super::vector::{V3, get, set};
 use super::wave::{Surfaces, Wave};
 use super::{Hits, Rays, spawn};
 use crate::flat::{ColorSource, FlatScene, Geometry, Scatter, Spheres};
-use crate::math::lanes::{BitLanes, MOST, WideLanes};
+use crate::math::lanes::{BitLanes, WideLanes};
 use crate::math::{Vec3, acos, atan2};
 
 /// A point of a surface in each lane, but for what is looked up lane by lane.
@@ -124,7 +124,7 @@ pub fn hit_place(scene: &FlatScene, rays: &Rays, hits: &Hits, i: usize) -> [[f32
 /// Interpolates in the geometry's own space.
 #[inline(always)]
 fn on_triangles<L: BitLanes>(geometry: &Geometry, hits: &Hits, chunk: &Chunk) -> Points<L> {
-    let mut corners = [[[0.0; MOST]; 3]; 3];
+    let mut corners = [[[0.0; WIDEST]; 3]; 3];
     for lane in 0..L::N {
         let prim = chunk.at(&hits.prim, lane);
         let vertices = spawn::triangle_vertices(&geometry.triangles, prim);
@@ -136,7 +136,8 @@ fn on_triangles<L: BitLanes>(geometry: &Geometry, hits: &Hits, chunk: &Chunk) ->
             array[lane] = *x;
         }
     }
-    let vertices = corners.map(|corner| corner.map(|array| L::load(&array)));
+    let [a, b, c] = &corners;
+    let vertices = [V3::load(a).0, V3::load(b).0, V3::load(c).0];
     let (u, v): (L, L) = (chunk.lanes(&hits.u), chunk.lanes(&hits.v));
     let ng = V3(spawn::lanes::triangle_normal(vertices));
     Points {
@@ -158,7 +159,7 @@ fn shading_normal<L: BitLanes>(
     if normals.is_empty() {
         return facing(ng, ng);
     }
-    let mut corners = [[[0.0; MOST]; 3]; 3];
+    let mut corners = [[[0.0; WIDEST]; 3]; 3];
     for lane in 0..L::N {
         // Smooth or not, every triangle has its three.
         let corner = 3 * chunk.at(&hits.prim, lane) as usize;
@@ -167,7 +168,8 @@ fn shading_normal<L: BitLanes>(
             array[lane] = *x;
         }
     }
-    let [n0, n1, n2] = corners.map(|corner| V3(corner.map(|array| L::load(&array))));
+    let [n0, n1, n2] = &corners;
+    let (n0, n1, n2) = (V3::load(n0), V3::load(n1), V3::load(n2));
     let w = L::splat(1.0) - u - v;
     facing(n0 * w + n1 * u + n2 * v, ng)
 }
@@ -202,7 +204,7 @@ fn on_spheres<L: BitLanes>(
     hits: &Hits,
     chunk: &Chunk,
 ) -> Points<L> {
-    let (mut numbers, mut sides) = ([[0.0; MOST]; 4], [0.0; MOST]);
+    let (mut numbers, mut sides) = ([[0.0; WIDEST]; 4], [0.0; WIDEST]);
     for lane in 0..L::N {
         let s = (chunk.at(&hits.prim, lane) & !Spheres::TAG) as usize;
         let [x, y, z] = spheres.center[s];
@@ -211,10 +213,11 @@ fn on_spheres<L: BitLanes>(
         }
         sides[lane] = if spheres.inverted[s] { -1.0 } else { 1.0 };
     }
-    let [x, y, z, radius] = numbers.map(|array| L::Wide::load(&array));
+    let [x, y, z, radius] = &numbers;
+    let center = [L::Wide::load(x), L::Wide::load(y), L::Wide::load(z)];
+    let radius = L::Wide::load(radius);
     let ray = [chunk.vector(&rays.origin).0, chunk.vector(&rays.dir).0];
-    let (position, outward) =
-        spawn::lanes::sphere_point(ray, chunk.lanes(&hits.t), [x, y, z], radius);
+    let (position, outward) = spawn::lanes::sphere_point(ray, chunk.lanes(&hits.t), center, radius);
     let ng = V3(outward) * L::load(&sides);
     Points {
         position: V3(position),

@@ -1,8 +1,9 @@
 //! Vectors in lanes, bases, maps from the square, and single elements of SoA vectors.
 
+use super::chunk::WIDEST;
 use crate::math::Vec3;
 use crate::math::lanes::{BitLanes, Lanes, Words};
-use std::ops::{Add, Mul, Neg, Sub};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Element i of three arrays.
 #[inline(always)]
@@ -59,6 +60,25 @@ impl<L: Lanes> Mul<L> for V3<L> {
     }
 }
 
+/// By component.
+impl<L: Lanes> Div for V3<L> {
+    type Output = V3<L>;
+    #[inline(always)]
+    fn div(self, V3(b): V3<L>) -> V3<L> {
+        let V3(a) = self;
+        V3([a[0] / b[0], a[1] / b[1], a[2] / b[2]])
+    }
+}
+
+impl<L: Lanes> Div<L> for V3<L> {
+    type Output = V3<L>;
+    #[inline(always)]
+    fn div(self, s: L) -> V3<L> {
+        let V3(a) = self;
+        V3([a[0] / s, a[1] / s, a[2] / s])
+    }
+}
+
 impl<L: Lanes> Neg for V3<L> {
     type Output = V3<L>;
     #[inline(always)]
@@ -72,6 +92,25 @@ impl<L: Lanes> V3<L> {
     #[inline(always)]
     pub(super) fn splat(v: [f32; 3]) -> V3<L> {
         V3([L::splat(v[0]), L::splat(v[1]), L::splat(v[2])])
+    }
+
+    /// The first elements of three arrays.
+    #[inline(always)]
+    pub(super) fn load([x, y, z]: &[[f32; WIDEST]; 3]) -> V3<L> {
+        V3([L::load(x), L::load(y), L::load(z)])
+    }
+
+    /// The same in f64.
+    #[inline(always)]
+    pub(super) fn widen(self) -> [L::Wide; 3] {
+        let V3([x, y, z]) = self;
+        [x.widen(), y.widen(), z.widen()]
+    }
+
+    /// Rounded to f32.
+    #[inline(always)]
+    pub(super) fn narrow([x, y, z]: [L::Wide; 3]) -> V3<L> {
+        V3([L::narrow(x), L::narrow(y), L::narrow(z)])
     }
 
     #[inline(always)]

@@ -1,10 +1,11 @@
 //! The wave: a batch of paths in SoA path state, all at the same bounce.
 
+use super::chunk::WIDEST;
 use super::groups::Groups;
 use super::vector::{V3, get, set};
 use super::{Hits, Rays, opacity::Through};
 use crate::math::Vec3;
-use crate::math::lanes::{BitLanes, MOST, Words};
+use crate::math::lanes::{BitLanes, Words};
 
 /// Paths in flight at once. Batches of 512 to 2048 were within 5 % of each other in a probe of the room of spheres.
 pub(super) const WAVE: usize = 1024;
@@ -181,9 +182,9 @@ impl Shadows {
             .chain(&mut self.radiance)
             .chain([&mut self.rays.t_max])
         {
-            array.resize(n + MOST, 0.0);
+            array.resize(n + WIDEST, 0.0);
         }
-        self.slot.resize(n + MOST, 0);
+        self.slot.resize(n + WIDEST, 0);
     }
 
     /// Keeps the first n rays.

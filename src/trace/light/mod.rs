@@ -6,12 +6,13 @@
 mod sphere;
 
 use super::attributes::light_radiance;
+use super::chunk::WIDEST;
 use super::punctual::sample_punctual;
 use super::vector::{V3, unit};
 use crate::flat::{FlatScene, LightTriangles, Lights, Spheres};
 use crate::math::Vec3;
-use crate::math::lanes::{BitLanes, MOST};
-use sphere::{sample_spheres, sphere_pdf};
+use crate::math::lanes::BitLanes;
+use sphere::{Chosen, sample_spheres, sphere_pdf};
 
 /// Shadow rays stop short of the light by this factor, four units in the last place: the light's own hit, whose t is
 /// rounded to half a unit, stays behind the end.
@@ -46,9 +47,12 @@ pub(super) fn sample_lights<L: BitLanes>(
     u: [L; 2],
 ) -> LightSample<L> {
     let lights = &scene.lights;
-    let mut chosen = [0; MOST];
+    if let ([sphere], 1) = (lights.spheres.as_slice(), lights.len()) {
+        return sample_spheres(scene, from, &Chosen::one(scene, *sphere), u);
+    }
+    let mut chosen = [0; WIDEST];
     if lights.len() > 1 {
-        let mut numbers = [0.0; MOST];
+        let mut numbers = [0.0; WIDEST];
         choice().store(&mut numbers);
         for lane in 0..L::N {
             chosen[lane] = choose(lights, numbers[lane]);
@@ -58,7 +62,7 @@ pub(super) fn sample_lights<L: BitLanes>(
         for lane in &mut chosen {
             *lane = lights.spheres[*lane as usize];
         }
-        return sample_spheres(scene, from, &chosen, u);
+        return sample_spheres(scene, from, &Chosen::each(scene, &chosen), u);
     }
     one_by_one(scene, from, &chosen, u)
 }
@@ -76,14 +80,14 @@ fn choose(lights: &Lights, number: f32) -> u32 {
 fn one_by_one<L: BitLanes>(
     scene: &FlatScene,
     V3(from): V3<L>,
-    chosen: &[u32; MOST],
+    chosen: &[u32; WIDEST],
     u: [L; 2],
 ) -> LightSample<L> {
-    let mut numbers = [[0.0; MOST]; 5];
+    let mut numbers = [[0.0; WIDEST]; 5];
     for (lanes, array) in from.into_iter().chain(u).zip(&mut numbers) {
         lanes.store(array);
     }
-    let mut samples = [[0.0; MOST]; 8];
+    let mut samples = [[0.0; WIDEST]; 8];
     let [mut punctual, mut valid] = [0; 2];
     for lane in 0..L::N {
         let [x, y, z, u0, u1] = numbers.map(|array| array[lane]);
@@ -102,12 +106,13 @@ fn one_by_one<L: BitLanes>(
         punctual |= sample.punctual << lane;
         valid |= 1 << lane;
     }
-    let [x, y, z, r, g, b, t_max, pdf] = samples.map(|array| L::load(&array));
+    let [x, y, z, r, g, b, t_max, pdf] = &samples;
+    let load = |array: &[f32; WIDEST]| L::load(array);
     LightSample {
-        dir: V3([x, y, z]),
-        t_max,
-        radiance: V3([r, g, b]),
-        pdf,
+        dir: V3([load(x), load(y), load(z)]),
+        t_max: load(t_max),
+        radiance: V3([load(r), load(g), load(b)]),
+        pdf: load(pdf),
         punctual,
         valid,
     }
@@ -123,7 +128,7 @@ fn sample_light(
     let lights = &scene.lights;
     let total = lights.total();
     if let Some(&sphere) = lights.spheres.get(chosen) {
-        let sample = sample_spheres(scene, V3::from(from), &[sphere; MOST], u);
+        let sample = sample_spheres(scene, V3::from(from), &Chosen::one(scene, sphere), u);
         return (sample.valid != 0).then_some(sample);
     }
     let (i, triangles) = (chosen - lights.spheres.len(), &lights.triangles);

@@ -3,7 +3,8 @@
 use super::{LightSample, SHORT, mean};
 use crate::flat::FlatScene;
 use crate::math::Vec3;
-use crate::math::lanes::{BitLanes, MOST, WideLanes};
+use crate::math::lanes::{BitLanes, WideLanes};
+use crate::trace::chunk::WIDEST;
 use crate::trace::vector::{V3, basis, sin_cos_turns};
 use std::f64::consts::{PI, TAU};
 
@@ -25,38 +26,73 @@ struct Cone<L: BitLanes> {
     valid: u32,
 }
 
-/// Spheres in lanes.
-struct Chosen<W> {
-    center: [W; 3],
-    radius: W,
+/// Sphere lights in lanes.
+pub(super) struct Chosen<L: BitLanes> {
+    center: [L::Wide; 3],
+    radius: L::Wide,
     /// 2 where the sphere is inverted, else 0.
-    inverted: W,
+    inverted: L::Wide,
     /// Bit i: the sphere of lane i is inverted.
     inverted_bits: u32,
+    radiance: V3<L>,
+    /// As in the table.
+    weight: L::Wide,
 }
 
-impl<W: WideLanes> Chosen<W> {
+impl<L: BitLanes> Chosen<L> {
+    /// One sphere in all lanes.
     #[inline(always)]
-    fn of<L: BitLanes<Wide = W>>(scene: &FlatScene, spheres: &[u32; MOST]) -> Chosen<W> {
+    pub(super) fn one(scene: &FlatScene, sphere: u32) -> Chosen<L> {
+        let (s, i, wide) = (&scene.spheres, sphere as usize, L::Wide::splat);
+        let [x, y, z] = s.center[i];
+        let radiance = scene.materials[s.material[i].0 as usize].emission;
+        Chosen {
+            center: [wide(x), wide(y), wide(z)],
+            radius: wide(s.radius[i]),
+            inverted: wide(if s.inverted[i] { 2.0 } else { 0.0 }),
+            inverted_bits: if s.inverted[i] { u32::MAX } else { 0 },
+            radiance: V3::splat(radiance),
+            weight: wide(sphere_weight(s.radius[i], Vec3::from(radiance))),
+        }
+    }
+
+    /// A sphere in each lane.
+    #[inline(always)]
+    pub(super) fn each(scene: &FlatScene, spheres: &[u32; WIDEST]) -> Chosen<L> {
         let s = &scene.spheres;
-        let mut numbers = [[0.0; MOST]; 5];
+        let (mut numbers, mut radiances) = ([[0.0; WIDEST]; 6], [[0.0; WIDEST]; 3]);
         let mut inverted_bits = 0;
         for lane in 0..L::N {
             let i = spheres[lane] as usize;
             let [x, y, z] = s.center[i];
             let inverted = s.inverted[i];
             inverted_bits |= u32::from(inverted) << lane;
-            let all = [x, y, z, s.radius[i], if inverted { 2.0 } else { 0.0 }];
+            let radiance = scene.materials[s.material[i].0 as usize].emission;
+            let weight = sphere_weight(s.radius[i], Vec3::from(radiance));
+            let all = [
+                x,
+                y,
+                z,
+                s.radius[i],
+                if inverted { 2.0 } else { 0.0 },
+                weight,
+            ];
             for (array, x) in numbers.iter_mut().zip(all) {
                 array[lane] = x;
             }
+            for (array, x) in radiances.iter_mut().zip(radiance) {
+                array[lane] = x;
+            }
         }
-        let [x, y, z, radius, inverted] = &numbers;
+        let [x, y, z, radius, inverted, weight] = &numbers;
+        let wide = |array: &[f64; WIDEST]| L::Wide::load(array);
         Chosen {
-            center: [W::load(x), W::load(y), W::load(z)],
-            radius: W::load(radius),
-            inverted: W::load(inverted),
+            center: [wide(x), wide(y), wide(z)],
+            radius: wide(radius),
+            inverted: wide(inverted),
             inverted_bits,
+            radiance: V3::load(&radiances),
+            weight: wide(weight),
         }
     }
 }
@@ -64,14 +100,11 @@ impl<W: WideLanes> Chosen<W> {
 impl<L: BitLanes> Cone<L> {
     /// 1 − cos θ = s² / (1 + √(1 − s²)), s = r / d, has no cancellation at any distance; d² − r² is (d − r)(d + r).
     #[inline(always)]
-    fn new(V3(from): V3<L>, sphere: Chosen<L::Wide>) -> Cone<L> {
+    fn new(from: V3<L>, sphere: &Chosen<L>) -> Cone<L> {
         let [zero, one] = [L::Wide::splat(0.0), L::Wide::splat(1.0)];
         let (c, radius) = (sphere.center, sphere.radius);
-        let to_center = [
-            c[0] - from[0].widen(),
-            c[1] - from[1].widen(),
-            c[2] - from[2].widen(),
-        ];
+        let from = from.widen();
+        let to_center = [c[0] - from[0], c[1] - from[1], c[2] - from[2]];
         let d2 = dot(to_center, to_center);
         let d = d2.sqrt();
         let gap = (d - radius) * (d + radius);
@@ -95,7 +128,7 @@ impl<L: BitLanes> Cone<L> {
     #[inline(always)]
     fn sample(&self, u: [L; 2]) -> V3<L> {
         let wide = L::Wide::splat;
-        let axis = V3(self.to_center.map(L::narrow)).unit();
+        let axis = V3::<L>::narrow(self.to_center).unit();
         let axis = V3::select(axis.finite(), axis, V3::splat([0.0, 0.0, 1.0]));
         let height = self.one_minus_cos * u[0].widen();
         let cos = L::narrow(wide(1.0) - height);
@@ -108,8 +141,8 @@ impl<L: BitLanes> Cone<L> {
     /// Distance to the emitting side along the rounded direction, as the kernel will find it; a direction that rounding
     /// puts beside the rim ends where it comes nearest.
     #[inline(always)]
-    fn distance(&self, V3(dir): V3<L>) -> L {
-        let d = dir.map(|x| x.widen());
+    fn distance(&self, dir: V3<L>) -> L {
+        let d = dir.widen();
         let a = dot(d, d);
         let to = self.to_center;
         let b = dot(to, d) / a;
@@ -120,32 +153,21 @@ impl<L: BitLanes> Cone<L> {
     }
 }
 
-/// Samples a sphere of the scene, a light, in each lane.
+/// Samples sphere lights of the scene, one in each lane.
 #[inline(always)]
 pub(super) fn sample_spheres<L: BitLanes>(
     scene: &FlatScene,
     from: V3<L>,
-    spheres: &[u32; MOST],
+    spheres: &Chosen<L>,
     u: [L; 2],
 ) -> LightSample<L> {
-    let cone = Cone::new(from, Chosen::of::<L>(scene, spheres));
+    let cone = Cone::new(from, spheres);
     let dir = cone.sample(u);
-    let (mut weights, mut radiances) = ([0.0; MOST], [[0.0; MOST]; 3]);
-    for lane in 0..L::N {
-        let sphere = spheres[lane] as usize;
-        let material = scene.spheres.material[sphere].0 as usize;
-        let radiance = scene.materials[material].emission;
-        weights[lane] = sphere_weight(scene.spheres.radius[sphere], Vec3::from(radiance));
-        for (array, x) in radiances.iter_mut().zip(radiance) {
-            array[lane] = x;
-        }
-    }
-    let total = L::Wide::splat(scene.lights.total());
-    let pdf = cone.pdf() * L::Wide::load(&weights) / total;
+    let pdf = cone.pdf() * spheres.weight / L::Wide::splat(scene.lights.total());
     LightSample {
         dir,
         t_max: cone.distance(dir) * L::splat(SHORT),
-        radiance: V3(radiances.map(|array| L::load(&array))),
+        radiance: spheres.radiance,
         pdf: L::narrow(pdf),
         punctual: 0,
         valid: cone.valid,
@@ -154,7 +176,7 @@ pub(super) fn sample_spheres<L: BitLanes>(
 
 /// Density of sampling a sphere from a point; 0 on the side that does not emit.
 pub(super) fn sphere_pdf(scene: &FlatScene, from: V3<f32>, sphere: u32, radiance: Vec3) -> f32 {
-    let cone = Cone::new(from, Chosen::of::<f32>(scene, &[sphere; MOST]));
+    let cone = Cone::new(from, &Chosen::<f32>::one(scene, sphere));
     if cone.valid == 0 {
         return 0.0;
     }
@@ -185,8 +207,10 @@ mod tests {
             radius: 1.0,
             inverted: if inverted { 2.0 } else { 0.0 },
             inverted_bits: u32::from(inverted),
+            radiance: V3([1.0; 3]),
+            weight: 1.0,
         };
-        let cone = Cone::new(V3::from(from), sphere);
+        let cone = Cone::new(V3::from(from), &sphere);
         (cone.valid == 1).then_some(cone)
     }
 

@@ -34,7 +34,8 @@ pub(in crate::trace) fn triangle_normal<L: BitLanes>(v: [[L; 3]; 3]) -> [L; 3] {
     ];
     let length = length(n);
     let there = L::wide_lt(zero, length);
-    n.map(|x| L::select(there, L::narrow(x / length), L::splat(0.0)))
+    let unit = |x: L::Wide| L::select(there, L::narrow(x / length), L::splat(0.0));
+    [unit(n[0]), unit(n[1]), unit(n[2])]
 }
 
 /// [`super::sphere_point`].
