@@ -1,67 +1,85 @@
 //! Generate: camera rays of a wave.
 
-use super::sampler::{Pair, sample_pair};
-use super::vector::{concentric_disk, unit};
+use super::chunk::{Chunk, WIDEST};
+use super::sampler::{Pair, sample_pairs};
+use super::vector::{V3, concentric_disk, sin_cos_turns};
 use super::{Sampler, wave::Wave};
 use crate::flat::{Camera, PixelFilter};
-use crate::math::{Vec3, ln, sin_cos_turns};
+use crate::math::lanes::BitLanes;
+use crate::math::{Vec3, ln};
 
-/// A sample of the image: pixel, sample index and the key of the pixel's random numbers.
-#[derive(Clone, Copy)]
-pub(super) struct ImageSample {
-    pub(super) x: u32,
-    pub(super) y: u32,
-    pub(super) sample: u32,
-    pub(super) key: u32,
-}
-
-/// Starts a path for the sample in the next slot.
-pub(super) fn generate(wave: &mut Wave, camera: &Camera, sampler: Sampler, s: ImageSample) {
-    let slot = wave.slots.key.len() as u32;
-    wave.slots.key.push(s.key);
-    wave.slots.sample.push(s.sample);
-    let [dx, dy] = filter_offset(
-        camera.filter,
-        sample_pair(sampler, s.key, s.sample, Pair::Pixel),
-    );
-    let through = image_direction(camera, s.x as f32 + 0.5 + dx, s.y as f32 + 0.5 + dy);
-    let origin = Vec3::from(camera.origin);
-    if camera.aperture_radius == 0.0 {
-        wave.paths.push(origin, unit(through), slot);
-    } else {
-        let [lx, ly] = concentric_disk::<f32>(sample_pair(sampler, s.key, s.sample, Pair::Lens));
-        let shift =
-            (Vec3::from(camera.right) * lx - Vec3::from(camera.down) * ly) * camera.aperture_radius;
-        wave.paths.push(
-            origin + shift,
-            unit(through - shift / camera.focus_distance),
-            slot,
+/// Starts a path for the sample in every slot.
+#[inline(always)]
+pub(super) fn generate<L: BitLanes>(wave: &mut Wave, camera: &Camera, sampler: Sampler) {
+    let Wave { paths, slots, .. } = wave;
+    let n = slots.key.len();
+    paths.start(n);
+    for first in (0..n).step_by(L::N) {
+        let chunk = Chunk::range::<L>(first, n);
+        let (key, sample) = (
+            chunk.words::<L>(&slots.key),
+            chunk.words::<L>(&slots.sample),
         );
+        let u = sample_pairs::<L>(sampler, key, sample, Pair::Pixel);
+        let [dx, dy] = filter_offset(camera.filter, u);
+        let x = chunk.lanes::<L>(&slots.center[0]) + dx;
+        let y = chunk.lanes::<L>(&slots.center[1]) + dy;
+        let through = through(camera, x, y);
+        let origin = V3::splat(camera.origin);
+        if camera.aperture_radius == 0.0 {
+            chunk.put_vector(origin, &mut paths.rays.origin);
+            chunk.put_vector(through.unit(), &mut paths.rays.dir);
+            continue;
+        }
+        let [lx, ly] = concentric_disk(sample_pairs::<L>(sampler, key, sample, Pair::Lens));
+        let (right, down) = (V3::splat(camera.right), V3::splat(camera.down));
+        let shift = (right * lx - down * ly) * L::splat(camera.aperture_radius);
+        let dir = through - shift / L::splat(camera.focus_distance);
+        chunk.put_vector(origin + shift, &mut paths.rays.origin);
+        chunk.put_vector(dir.unit(), &mut paths.rays.dir);
     }
 }
 
 /// Direction through image point (x, y) in pixels, of length 1 along the view axis.
+#[inline(always)]
+fn through<L: BitLanes>(camera: &Camera, x: L, y: L) -> V3<L> {
+    let pixel = L::splat(camera.pixel);
+    let right = (x - L::splat(0.5 * camera.width as f32)) * pixel;
+    let down = (y - L::splat(0.5 * camera.height as f32)) * pixel;
+    V3::splat(camera.forward) + V3::splat(camera.right) * right + V3::splat(camera.down) * down
+}
+
+/// Unit direction through image point (x, y) in pixels from the middle of the lens.
 pub(super) fn image_direction(camera: &Camera, x: f32, y: f32) -> Vec3 {
-    let right = (x - 0.5 * camera.width as f32) * camera.pixel;
-    let down = (y - 0.5 * camera.height as f32) * camera.pixel;
-    Vec3::from(camera.forward) + Vec3::from(camera.right) * right + Vec3::from(camera.down) * down
+    Vec3::from(through(camera, x, y).unit())
 }
 
 /// Offset from the pixel's centre, in pixels, with the density of the filter.
 ///
 /// The Gaussian cut off at R = 3σ: its radius by inversion, r = σ √(−2 ln(1 − u (1 − e^(−9/2)))) (Box and Muller 1958,
 /// truncated).
-fn filter_offset(filter: PixelFilter, u: [f32; 2]) -> [f32; 2] {
+#[inline(always)]
+fn filter_offset<L: BitLanes>(filter: PixelFilter, u: [L; 2]) -> [L; 2] {
     match filter {
-        PixelFilter::Box => [u[0] - 0.5, u[1] - 0.5],
+        PixelFilter::Box => [u[0] - L::splat(0.5), u[1] - L::splat(0.5)],
         PixelFilter::Gaussian(radius) => {
-            /// 1 − e^(−9/2).
-            const INSIDE: f64 = 0.988_891_003_461_757_7;
-            let r = f64::from(radius) / 3.0 * (-2.0 * ln(1.0 - f64::from(u[0]) * INSIDE)).sqrt();
+            let mut numbers = [0.0; WIDEST];
+            u[0].store(&mut numbers);
+            for u in &mut numbers[..L::N] {
+                *u = gaussian_radius(radius, *u);
+            }
+            let r = L::load(&numbers);
             let (sin, cos) = sin_cos_turns(u[1]);
-            [r as f32 * cos, r as f32 * sin]
+            [r * cos, r * sin]
         }
     }
+}
+
+#[inline(always)]
+fn gaussian_radius(radius: f32, u: f32) -> f32 {
+    /// 1 − e^(−9/2).
+    const INSIDE: f64 = 0.988_891_003_461_757_7;
+    (f64::from(radius) / 3.0 * (-2.0 * ln(1.0 - f64::from(u) * INSIDE)).sqrt()) as f32
 }
 
 #[cfg(test)]

@@ -64,7 +64,7 @@ pub(super) fn group(wave: &mut Wave, scene: &FlatScene) {
         ..
     } = wave;
     groups.clear();
-    surfaces.resize(paths.len());
+    surfaces.reserve(paths.len());
     alive.clear();
     alive.resize(paths.len(), false);
     for i in 0..paths.len() {

@@ -1,14 +1,14 @@
 //! The path loop: the stages of a bounce over a wave, from camera rays to sums.
 
 use super::attributes::{Place, emitted};
-use super::camera::{ImageSample, generate, image_direction};
+use super::camera::image_direction;
 use super::light::{light_pdf, towards};
 use super::opacity::{pass_paths, pass_shadows, random};
 use super::sampler::pixel_key;
 use super::scatter::{Bounce, mis_weight};
-use super::stages::{compact, roulette, sample_bsdf, sample_lights, surface};
+use super::stages::{compact, generate, roulette, sample_bsdf, sample_lights, surface};
 use super::surface::color_by_vertices;
-use super::vector::{get, set, unit};
+use super::vector::{get, set};
 use super::wave::{WAVE, Wave};
 use super::{Hits, Rect, TileSums, TraceOptions, closest_hit, occluded};
 use crate::flat::{FlatScene, Needs, Scatter, Spheres};
@@ -109,14 +109,10 @@ pub(super) fn start_paths(
         let y = rect.y + (pixel as u32 / rect.width);
         let key = pixel_key(options.seed, scene.frame, x, y);
         for sample in samples.clone() {
-            generate(
-                wave,
-                &scene.camera,
-                options.sampler,
-                ImageSample { x, y, sample, key },
-            );
+            wave.slots.push(key, sample, [x, y]);
         }
     }
+    generate(options.isa, wave, &scene.camera, options.sampler);
 }
 
 /// The stages of every bounce, until no path is left.
@@ -321,11 +317,7 @@ fn trace_ids(
     wave.paths.clear();
     for pixel in 0..sums.uv.len() as u32 {
         let (x, y) = (rect.x + pixel % rect.width, rect.y + pixel / rect.width);
-        let dir = unit(image_direction(
-            &scene.camera,
-            x as f32 + 0.5,
-            y as f32 + 0.5,
-        ));
+        let dir = image_direction(&scene.camera, x as f32 + 0.5, y as f32 + 0.5);
         wave.paths.push(Vec3::from(scene.camera.origin), dir, pixel);
     }
     closest_hit(scene, options.isa, &wave.paths.rays, &mut wave.hits);

@@ -51,14 +51,7 @@ pub fn triangle_normal(v: [[f32; 3]; 3]) -> [f32; 3] {
 #[must_use]
 #[inline(always)]
 pub fn instance_point(instance: &Instance, p: [f32; 3]) -> [f32; 3] {
-    let [x, y, z] = [f64::from(p[0]), f64::from(p[1]), f64::from(p[2])];
-    let mut world = [0.0; 3];
-    for axis in 0..3 {
-        let m = instance.to_world[axis];
-        let sum = f64::from(m[0]) * x + f64::from(m[1]) * y + f64::from(m[2]) * z;
-        world[axis] = (sum + f64::from(m[3])) as f32;
-    }
-    world
+    lanes::instance_point(&one_lane(&instance.to_world), p)
 }
 
 /// A local normal in the scene, unit: by the transpose of `to_local`. A mirroring instance keeps its direction; whether that
@@ -66,14 +59,12 @@ pub fn instance_point(instance: &Instance, p: [f32; 3]) -> [f32; 3] {
 #[must_use]
 #[inline(always)]
 pub fn instance_normal(instance: &Instance, n: [f32; 3]) -> [f32; 3] {
-    let w = &instance.to_local;
-    let mut world = [0.0; 3];
-    for axis in 0..3 {
-        world[axis] = f64::from(w[0][axis]) * f64::from(n[0])
-            + f64::from(w[1][axis]) * f64::from(n[1])
-            + f64::from(w[2][axis]) * f64::from(n[2]);
-    }
-    normalized(world)
+    lanes::instance_normal(&one_lane(&instance.to_local), n)
+}
+
+#[inline(always)]
+fn one_lane(matrix: &[[f32; 4]; 3]) -> [[[f32; 1]; 4]; 3] {
+    matrix.map(|row| row.map(|x| [x]))
 }
 
 /// The point of a sphere that a ray meets at `t`, with its outward unit normal: o + t d reprojected to C + r n in f64, then
@@ -95,23 +86,4 @@ pub fn sphere_point(
 #[inline(always)]
 pub fn offset_origin(p: [f32; 3], ng: [f32; 3], err: f32, dir: [f32; 3]) -> [f32; 3] {
     lanes::offset_origin(p, ng, err, dir)
-}
-
-#[inline(always)]
-fn length(v: [f64; 3]) -> f64 {
-    (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt()
-}
-
-#[inline(always)]
-fn normalized(v: [f64; 3]) -> [f32; 3] {
-    let length = length(v);
-    if length > 0.0 {
-        [
-            (v[0] / length) as f32,
-            (v[1] / length) as f32,
-            (v[2] / length) as f32,
-        ]
-    } else {
-        [0.0; 3]
-    }
 }

@@ -5,18 +5,25 @@
     reason = "an entry is called on the proof that the machine has its instructions"
 )]
 
+use super::camera;
 use super::roulette;
 use super::scatter::{self, Bounce};
 use super::surface;
 use super::wave::Wave;
-use super::{Isa, isa::Level};
-use crate::flat::{FlatScene, Scatter};
+use super::{Isa, Sampler, isa::Level};
+use crate::flat::{Camera, FlatScene, Scatter};
 #[cfg(target_arch = "x86_64")]
 use crate::math::lanes::avx2 as avx2_lanes;
 use crate::math::lanes::baseline;
 
 macro_rules! stages {
     ($lanes:ty $(, $features:literal)?) => {
+        $(#[target_feature(enable = $features)])?
+        #[inline(never)]
+        pub(super) fn generate(wave: &mut Wave, camera: &Camera, sampler: Sampler) {
+            camera::generate::<$lanes>(wave, camera, sampler);
+        }
+
         $(#[target_feature(enable = $features)])?
         #[inline(never)]
         pub(super) fn surface(wave: &mut Wave, scene: &FlatScene) {
@@ -76,6 +83,11 @@ macro_rules! on_isa {
             _ => sse2::$entry($($argument),*),
         }
     };
+}
+
+/// [`camera::generate`].
+pub(super) fn generate(isa: Isa, wave: &mut Wave, camera: &Camera, sampler: Sampler) {
+    on_isa!(isa, generate(wave, camera, sampler));
 }
 
 /// [`surface::surface`].

@@ -33,11 +33,12 @@ pub(super) fn surface<L: BitLanes>(wave: &mut Wave, scene: &FlatScene) {
         write(surfaces, &chunk, &points);
     }
     for chunk in Chunk::all::<L>(&groups.by_shape[Shape::Triangle as usize]) {
-        let points = on_triangles::<L>(&scene.world, hits, &chunk);
+        let points = on_triangles::<L>(|_| &scene.world, hits, &chunk);
         write(surfaces, &chunk, &points);
     }
-    for chunk in Chunk::all::<f32>(&groups.by_shape[Shape::Instance as usize]) {
-        write(surfaces, &chunk, &on_instance(scene, hits, &chunk));
+    for chunk in Chunk::all::<L>(&groups.by_shape[Shape::Instance as usize]) {
+        let points = on_instances::<L>(scene, hits, &chunk);
+        write(surfaces, &chunk, &points);
     }
     if scene.needs.uvs || scene.needs.textures {
         look_up(surfaces, scene, hits, groups.by_shape.iter().flatten());
@@ -80,7 +81,7 @@ fn write<L: BitLanes>(surfaces: &mut Surfaces, chunk: &Chunk, points: &Points<L>
 #[inline(never)]
 pub(super) fn color_by_vertices(wave: &mut Wave, scene: &FlatScene) {
     let Wave { hits, surfaces, .. } = wave;
-    for i in 0..surfaces.material.len() {
+    for i in 0..hits.prim.len() {
         let hit = hits.prim[i] != Hits::NONE;
         if hit && scene.materials[surfaces.material[i] as usize].vertex_colors {
             let place = Place::of_hit(hits, i, [0.0; 2]);
@@ -103,8 +104,8 @@ pub(super) fn place(scene: &FlatScene, rays: &Rays, hits: &Hits, i: usize) -> Po
     let chunk = Chunk::new::<f32>(&[i as u32]);
     let points = match Shape::of(hits, i) {
         Shape::Sphere => on_spheres::<f32>(&scene.spheres, rays, hits, &chunk),
-        Shape::Triangle => on_triangles::<f32>(&scene.world, hits, &chunk),
-        Shape::Instance => on_instance(scene, hits, &chunk),
+        Shape::Triangle => on_triangles::<f32>(|_| &scene.world, hits, &chunk),
+        Shape::Instance => on_instances::<f32>(scene, hits, &chunk),
     };
     Point {
         position: points.position.0,
@@ -121,57 +122,46 @@ pub fn hit_place(scene: &FlatScene, rays: &Rays, hits: &Hits, i: usize) -> [[f32
     [point.position, point.ng]
 }
 
-/// Interpolates in the geometry's own space.
+/// Interpolates in the own space of each lane's geometry.
 #[inline(always)]
-fn on_triangles<L: BitLanes>(geometry: &Geometry, hits: &Hits, chunk: &Chunk) -> Points<L> {
-    let mut corners = [[[0.0; WIDEST]; 3]; 3];
+fn on_triangles<'a, L: BitLanes>(
+    geometry: impl Fn(usize) -> &'a Geometry,
+    hits: &Hits,
+    chunk: &Chunk,
+) -> Points<L> {
+    let [mut corners, mut normals] = [[[[0.0; WIDEST]; 3]; 3]; 2];
+    let mut smooth = [0.0; WIDEST];
     for lane in 0..L::N {
-        let prim = chunk.at(&hits.prim, lane);
+        let (geometry, prim) = (geometry(lane), chunk.at(&hits.prim, lane));
         let vertices = spawn::triangle_vertices(&geometry.triangles, prim);
-        for (array, x) in corners
-            .as_flattened_mut()
-            .iter_mut()
-            .zip(vertices.as_flattened())
-        {
-            array[lane] = *x;
+        put_lane(&mut corners, lane, vertices.as_flattened());
+        let corner = 3 * prim as usize;
+        if let Some(three) = geometry.shading.normals.corner.get(corner..corner + 3) {
+            put_lane(&mut normals, lane, three.as_flattened());
+            smooth[lane] = 1.0;
         }
     }
     let [a, b, c] = &corners;
     let vertices = [V3::load(a).0, V3::load(b).0, V3::load(c).0];
     let (u, v): (L, L) = (chunk.lanes(&hits.u), chunk.lanes(&hits.v));
     let ng = V3(spawn::lanes::triangle_normal(vertices));
+    let [n0, n1, n2] = &normals;
+    let w = L::splat(1.0) - u - v;
+    let ns = V3::load(n0) * w + V3::load(n1) * u + V3::load(n2) * v;
+    let smooth = L::splat(0.0).lt(L::load(&smooth));
     Points {
         position: V3(spawn::lanes::triangle_point(vertices, u, v)),
         ng,
-        ns: shading_normal(&geometry.shading.normals.corner, hits, chunk, ng, [u, v]),
+        ns: facing(V3::select(smooth, ns, ng), ng),
     }
 }
 
-/// The interpolated corner normal, on the side of the geometric normal; that one where there is none.
+/// Spreads nine numbers over a lane of as many arrays.
 #[inline(always)]
-fn shading_normal<L: BitLanes>(
-    normals: &[[f32; 3]],
-    hits: &Hits,
-    chunk: &Chunk,
-    ng: V3<L>,
-    [u, v]: [L; 2],
-) -> V3<L> {
-    if normals.is_empty() {
-        return facing(ng, ng);
+fn put_lane(arrays: &mut [[[f32; WIDEST]; 3]; 3], lane: usize, numbers: &[f32]) {
+    for (array, x) in arrays.as_flattened_mut().iter_mut().zip(numbers) {
+        array[lane] = *x;
     }
-    let mut corners = [[[0.0; WIDEST]; 3]; 3];
-    for lane in 0..L::N {
-        // Smooth or not, every triangle has its three.
-        let corner = 3 * chunk.at(&hits.prim, lane) as usize;
-        let three = normals[corner..corner + 3].as_flattened();
-        for (array, x) in corners.as_flattened_mut().iter_mut().zip(three) {
-            array[lane] = *x;
-        }
-    }
-    let [n0, n1, n2] = &corners;
-    let (n0, n1, n2) = (V3::load(n0), V3::load(n1), V3::load(n2));
-    let w = L::splat(1.0) - u - v;
-    facing(n0 * w + n1 * u + n2 * v, ng)
 }
 
 /// A shading normal as a unit vector on the side of the geometric normal; that one where it has no direction.
@@ -184,13 +174,29 @@ fn facing<L: BitLanes>(ns: V3<L>, ng: V3<L>) -> V3<L> {
 }
 
 /// Positions by the matrix, normals by the transpose of its inverse: an outward normal stays outward, mirrored or not.
-fn on_instance(scene: &FlatScene, hits: &Hits, chunk: &Chunk) -> Points<f32> {
-    let instance = &scene.instances[chunk.at(&hits.instance, 0) as usize];
-    let local = on_triangles::<f32>(&scene.local[instance.geometry as usize], hits, chunk);
-    let ng = V3(spawn::instance_normal(instance, local.ng.0));
-    let ns = V3(spawn::instance_normal(instance, local.ns.0));
+#[inline(always)]
+fn on_instances<L: BitLanes>(scene: &FlatScene, hits: &Hits, chunk: &Chunk) -> Points<L> {
+    let instance = |lane| &scene.instances[chunk.at(&hits.instance, lane) as usize];
+    let local = on_triangles::<L>(
+        |lane| &scene.local[instance(lane).geometry as usize],
+        hits,
+        chunk,
+    );
+    let [mut to_world, mut to_local] = [[[[0.0; WIDEST]; 4]; 3]; 2];
+    for lane in 0..L::N {
+        let instance = instance(lane);
+        for row in 0..3 {
+            for column in 0..4 {
+                to_world[row][column][lane] = instance.to_world[row][column];
+                to_local[row][column][lane] = instance.to_local[row][column];
+            }
+        }
+    }
+    let ng = V3(spawn::lanes::instance_normal(&to_local, local.ng.0));
+    let ns = V3(spawn::lanes::instance_normal(&to_local, local.ns.0));
+    let position = spawn::lanes::instance_point(&to_world, local.position.0);
     Points {
-        position: V3(spawn::instance_point(instance, local.position.0)),
+        position: V3(position),
         ng,
         ns: facing(ns, ng),
     }

@@ -27,7 +27,8 @@ pub(super) struct Paths {
     pub(super) slot: Vec<u32>,
 }
 
-/// What the surface stage finds; entry i belongs to path i, and is meaningless where the path hit nothing.
+/// What the surface stage finds; entry i belongs to path i, and is meaningless where the path hit nothing or where there
+/// is none: the arrays only grow.
 #[derive(Debug, Default)]
 pub(super) struct Surfaces {
     /// Position, scene units.
@@ -61,6 +62,8 @@ pub(super) struct Slots {
     pub(super) key: Vec<u32>,
     /// Sample index.
     pub(super) sample: Vec<u32>,
+    /// Centre of the pixel, in pixels of the image.
+    pub(super) center: [Vec<f32>; 2],
     /// Radiance gathered so far.
     pub(super) radiance: [Vec<f32>; 3],
     /// Albedo, shading normal, geometric normal of the first hit; empty unless asked for.
@@ -108,6 +111,23 @@ impl Paths {
         self.pdf.clear();
         self.eta2.clear();
         self.slot.clear();
+    }
+
+    /// The starts of n paths, one for each slot, but for their rays.
+    pub(super) fn start(&mut self, n: usize) {
+        let fill = |array: &mut Vec<f32>, value: f32| {
+            array.clear();
+            array.resize(n, value);
+        };
+        for array in self.rays.origin.iter_mut().chain(&mut self.rays.dir) {
+            array.resize(n, 0.0);
+        }
+        fill(&mut self.rays.t_max, f32::MAX);
+        self.throughput.iter_mut().for_each(|a| fill(a, 1.0));
+        fill(&mut self.pdf, 0.0);
+        fill(&mut self.eta2, 1.0);
+        self.slot.clear();
+        self.slot.extend(0..n as u32);
     }
 
     /// Appends the start of a path.
@@ -162,7 +182,11 @@ fn keep<T: Copy>(
 }
 
 impl Surfaces {
-    pub(super) fn resize(&mut self, n: usize) {
+    /// Makes room for n paths.
+    pub(super) fn reserve(&mut self, n: usize) {
+        if n <= self.material.len() {
+            return;
+        }
         let vectors = self
             .position
             .iter_mut()
@@ -221,6 +245,7 @@ impl Slots {
     pub(super) fn reset(&mut self, n: usize, features: bool) {
         self.key.clear();
         self.sample.clear();
+        self.center.iter_mut().for_each(Vec::clear);
         let fill = |a: &mut Vec<f32>, n: usize, value: f32| {
             a.clear();
             a.resize(n, value);
@@ -232,6 +257,15 @@ impl Slots {
             .flatten()
             .for_each(|a| fill(a, n, 0.0));
         fill(&mut self.depth, n, f32::INFINITY);
+    }
+
+    /// Gives the next slot a sample of a pixel.
+    #[inline(always)]
+    pub(super) fn push(&mut self, key: u32, sample: u32, [x, y]: [u32; 2]) {
+        self.key.push(key);
+        self.sample.push(sample);
+        self.center[0].push(x as f32 + 0.5);
+        self.center[1].push(y as f32 + 0.5);
     }
 
     /// Adds radiance to a sample.

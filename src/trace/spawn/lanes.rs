@@ -20,8 +20,7 @@ pub(in crate::trace) fn triangle_point<L: Lanes>(v: [[L; 3]; 3], b1: L, b2: L) -
 /// [`super::triangle_normal`].
 #[inline(always)]
 pub(in crate::trace) fn triangle_normal<L: BitLanes>(v: [[L; 3]; 3]) -> [L; 3] {
-    let zero = L::Wide::splat(0.0);
-    let [mut a, mut b] = [[zero; 3]; 2];
+    let [mut a, mut b] = [[L::Wide::splat(0.0); 3]; 2];
     for axis in 0..3 {
         let from = v[0][axis].widen();
         a[axis] = v[1][axis].widen() - from;
@@ -32,10 +31,36 @@ pub(in crate::trace) fn triangle_normal<L: BitLanes>(v: [[L; 3]; 3]) -> [L; 3] {
         a[2] * b[0] - a[0] * b[2],
         a[0] * b[1] - a[1] * b[0],
     ];
-    let length = length(n);
-    let there = L::wide_lt(zero, length);
-    let unit = |x: L::Wide| L::select(there, L::narrow(x / length), L::splat(0.0));
-    [unit(n[0]), unit(n[1]), unit(n[2])]
+    normalized::<L>(n)
+}
+
+/// [`super::instance_point`], by rows of lanes.
+#[inline(always)]
+pub(in crate::trace) fn instance_point<L: Lanes, const N: usize>(
+    to_world: &[[[f32; N]; 4]; 3],
+    [x, y, z]: [L; 3],
+) -> [L; 3] {
+    let mut world = [x; 3];
+    for axis in 0..3 {
+        let m = |column: usize| L::load(&to_world[axis][column]).widen();
+        let sum = m(0) * x.widen() + m(1) * y.widen() + m(2) * z.widen();
+        world[axis] = L::narrow(sum + m(3));
+    }
+    world
+}
+
+/// [`super::instance_normal`], by rows of lanes.
+#[inline(always)]
+pub(in crate::trace) fn instance_normal<L: BitLanes, const N: usize>(
+    to_local: &[[[f32; N]; 4]; 3],
+    n: [L; 3],
+) -> [L; 3] {
+    let mut world = [L::Wide::splat(0.0); 3];
+    for axis in 0..3 {
+        let w = |row: usize| L::load(&to_local[row][axis]).widen();
+        world[axis] = w(0) * n[0].widen() + w(1) * n[1].widen() + w(2) * n[2].widen();
+    }
+    normalized::<L>(world)
 }
 
 /// [`super::sphere_point`].
@@ -99,6 +124,15 @@ fn next<L: BitLanes>(x: L, by: L) -> L {
     let moved = L::from_bits(moved.to_bits().xor(sign));
     let goes = zero.lt(by.abs()) & up.lt(L::splat(f32::INFINITY));
     L::select(goes, moved, x)
+}
+
+/// 0 where there is no length.
+#[inline(always)]
+fn normalized<L: BitLanes>(v: [L::Wide; 3]) -> [L; 3] {
+    let length = length(v);
+    let there = L::wide_lt(L::Wide::splat(0.0), length);
+    let unit = |x: L::Wide| L::select(there, L::narrow(x / length), L::splat(0.0));
+    [unit(v[0]), unit(v[1]), unit(v[2])]
 }
 
 #[inline(always)]
