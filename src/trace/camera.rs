@@ -12,13 +12,13 @@ use crate::math::{Vec3, ln};
 #[inline(always)]
 pub(super) fn generate<L: BitLanes>(wave: &mut Wave, camera: &Camera, sampler: Sampler) {
     let Wave { paths, slots, .. } = wave;
-    let n = slots.key.len();
+    let n = paths.key.len();
     paths.start(n);
     for first in (0..n).step_by(L::N) {
         let chunk = Chunk::range::<L>(first, n);
         let (key, sample) = (
-            chunk.words::<L>(&slots.key),
-            chunk.words::<L>(&slots.sample),
+            chunk.words::<L>(&paths.key),
+            chunk.words::<L>(&paths.sample),
         );
         let u = sample_pairs::<L>(sampler, key, sample, Pair::Pixel);
         let [dx, dy] = filter_offset(camera.filter, u);

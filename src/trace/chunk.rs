@@ -65,22 +65,6 @@ impl Chunk {
         (1 << self.len) - 1
     }
 
-    /// The elements that an array of indices has for the paths, as a chunk of their own.
-    #[inline(always)]
-    pub(super) fn through<L: BitLanes>(&self, indices: &[u32]) -> Chunk {
-        let mut index = [0; WIDEST];
-        let mut run = self.len == L::N;
-        for lane in 0..L::N {
-            index[lane] = indices[self.index[lane] as usize];
-            run &= index[lane] == index[0].wrapping_add(lane as u32);
-        }
-        Chunk {
-            index,
-            len: self.len,
-            run,
-        }
-    }
-
     /// The element of one lane.
     #[inline(always)]
     pub(super) fn at<T: Copy>(&self, array: &[T], lane: usize) -> T {

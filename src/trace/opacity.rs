@@ -9,7 +9,7 @@ use super::sampler::{Pair, sample_pair};
 use super::spawn::offset_origin;
 use super::surface::place;
 use super::vector::{get, set};
-use super::wave::{Slots, Wave};
+use super::wave::Wave;
 use super::{Hits, Isa, Rays, Sampler, closest_hit};
 use crate::flat::FlatScene;
 use crate::math::Vec3;
@@ -42,26 +42,22 @@ impl Through {
 }
 
 /// The number that lets paths pass blends at a bounce.
-pub(super) fn random(sampler: Sampler, bounce: u32) -> impl Fn(&Slots, usize, u32) -> f32 + Copy {
-    move |slots, slot, pass| {
-        let (key, sample) = (slots.key[slot], slots.sample[slot]);
-        sample_pair(sampler, key, sample, Pair::Opacity(bounce, pass))[0]
-    }
+pub(super) fn random(sampler: Sampler, bounce: u32) -> impl Fn(u32, u32, u32) -> f32 + Copy {
+    move |key, sample, pass| sample_pair(sampler, key, sample, Pair::Opacity(bounce, pass))[0]
 }
 
-/// Lets every path go on to the first surface that is there: where `number` (of slot and pass) is at most the share of
+/// Lets every path go on to the first surface that is there: where `number` (of key, sample and pass) is at most the share of
 /// rays that meet it. Returns how many rays that took.
 #[inline(never)]
 pub(super) fn pass_paths(
     wave: &mut Wave,
     scene: &FlatScene,
     isa: Isa,
-    number: impl Fn(&Slots, usize, u32) -> f32,
+    number: impl Fn(u32, u32, u32) -> f32,
 ) -> u64 {
     let Wave {
         paths,
         hits,
-        slots,
         through,
         ..
     } = wave;
@@ -80,8 +76,8 @@ pub(super) fn pass_paths(
                 return false;
             }
             let presence = hit_presence(scene, rays, hits, i);
-            let slot = paths.slot[i] as usize;
-            if presence >= 1.0 || presence > 0.0 && number(slots, slot, pass) <= presence {
+            let number = || number(paths.key[i], paths.sample[i], pass);
+            if presence >= 1.0 || presence > 0.0 && number() <= presence {
                 return false;
             }
             let origin = beyond(scene, rays, hits, i);

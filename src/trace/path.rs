@@ -109,7 +109,9 @@ pub(super) fn start_paths(
         let y = rect.y + (pixel as u32 / rect.width);
         let key = pixel_key(options.seed, scene.frame, x, y);
         for sample in samples.clone() {
-            wave.slots.push(key, sample, [x, y]);
+            wave.slots.push(sample, [x, y]);
+            wave.paths.key.push(key);
+            wave.paths.sample.push(sample);
         }
     }
     generate(options.isa, wave, &scene.camera, options.sampler);

@@ -242,11 +242,10 @@ pub(super) struct Numbers<L: BitLanes> {
 impl<L: BitLanes> Numbers<L> {
     #[inline(always)]
     pub(super) fn new(wave: &Wave, bounce: Bounce, chunk: &Chunk) -> Numbers<L> {
-        let slots = chunk.through::<L>(&wave.paths.slot);
         Numbers {
             sampler: bounce.options.sampler,
-            key: slots.words::<L>(&wave.slots.key),
-            sample: slots.words::<L>(&wave.slots.sample),
+            key: chunk.words::<L>(&wave.paths.key),
+            sample: chunk.words::<L>(&wave.paths.sample),
         }
     }
 

@@ -25,6 +25,12 @@ pub(super) struct Paths {
     pub(super) eta2: Vec<f32>,
     /// Which sample of the wave it is.
     pub(super) slot: Vec<u32>,
+    /// Key of its pixel's random numbers.
+    pub(super) key: Vec<u32>,
+    /// Its sample index.
+    pub(super) sample: Vec<u32>,
+    /// Which paths [`Paths::compact`] keeps, as bits.
+    kept: Vec<u32>,
 }
 
 /// What the surface stage finds; entry i belongs to path i, and is meaningless where the path hit nothing or where there
@@ -58,8 +64,6 @@ pub(super) struct Shadows {
 /// Samples of the wave by slot: they keep their place while paths move.
 #[derive(Debug, Default)]
 pub(super) struct Slots {
-    /// Key of the pixel's random numbers.
-    pub(super) key: Vec<u32>,
     /// Sample index.
     pub(super) sample: Vec<u32>,
     /// Centre of the pixel, in pixels of the image.
@@ -111,9 +115,11 @@ impl Paths {
         self.pdf.clear();
         self.eta2.clear();
         self.slot.clear();
+        self.key.clear();
+        self.sample.clear();
     }
 
-    /// The starts of n paths, one for each slot, but for their rays.
+    /// The starts of n paths, one for each slot, but for their rays and random numbers.
     pub(super) fn start(&mut self, n: usize) {
         let fill = |array: &mut Vec<f32>, value: f32| {
             array.clear();
@@ -130,51 +136,58 @@ impl Paths {
         self.slot.extend(0..n as u32);
     }
 
-    /// Appends the start of a path.
+    /// Appends a ray of a pixel that needs no random numbers.
     pub(super) fn push(&mut self, origin: Vec3, dir: Vec3, slot: u32) {
         self.rays.push(origin.to_array(), dir.to_array(), f32::MAX);
-        self.throughput.iter_mut().for_each(|c| c.push(1.0));
-        self.pdf.push(0.0);
-        self.eta2.push(1.0);
         self.slot.push(slot);
+        self.key.push(0);
+        self.sample.push(0);
     }
 
     /// Keeps the paths that `alive` says, in order.
     #[inline(always)]
     pub(super) fn compact<L: BitLanes>(&mut self, alive: &[bool]) {
+        self.kept.clear();
+        for alive in alive.chunks(L::N) {
+            let bits = (0..alive.len()).fold(0, |bits, i| bits | u32::from(alive[i]) << i);
+            self.kept.push(bits);
+        }
         let floats = self.rays.origin.iter_mut().chain(&mut self.rays.dir);
         let floats = floats.chain(&mut self.throughput);
         for array in floats.chain([&mut self.rays.t_max, &mut self.pdf, &mut self.eta2]) {
-            keep(array, alive, L::N, |array, at, chosen, to| {
+            keep(array, &self.kept, L::N, |array, at, chosen, to| {
                 L::load(&array[at..]).pack(chosen, &mut array[to..]);
             });
         }
-        keep(&mut self.slot, alive, L::N, |array, at, chosen, to| {
-            <L::Bits as Words>::load(&array[at..]).pack(chosen, &mut array[to..]);
-        });
+        for array in [&mut self.slot, &mut self.key, &mut self.sample] {
+            keep(array, &self.kept, L::N, |array, at, chosen, to| {
+                <L::Bits as Words>::load(&array[at..]).pack(chosen, &mut array[to..]);
+            });
+        }
     }
 }
 
-/// Keeps the elements that `alive` says. `pack` writes those of `n` elements whose bits are set to an earlier place, or where
+/// Keeps the elements whose bits are set, `n` to a word. `pack` writes those of `n` elements to an earlier place, or where
 /// they are.
 #[inline(always)]
 fn keep<T: Copy>(
     array: &mut Vec<T>,
-    alive: &[bool],
+    kept: &[u32],
     n: usize,
     pack: impl Fn(&mut [T], usize, u32, usize),
 ) {
     let mut to = 0;
-    for (chunk, alive) in alive.chunks(n).enumerate() {
+    for (chunk, &chosen) in kept.iter().enumerate() {
         let at = chunk * n;
-        let chosen = (0..alive.len()).fold(0, |bits, i| bits | u32::from(alive[i]) << i);
-        if alive.len() == n {
-            pack(array, at, chosen, to);
+        if at + n <= array.len() {
+            if to < at || chosen.count_ones() < n as u32 {
+                pack(array, at, chosen, to);
+            }
             to += chosen.count_ones() as usize;
             continue;
         }
-        for i in (0..alive.len()).filter(|&i| alive[i]) {
-            array[to] = array[at + i];
+        for i in (at..array.len()).filter(|i| chosen >> (i - at) & 1 == 1) {
+            array[to] = array[i];
             to += 1;
         }
     }
@@ -243,7 +256,6 @@ impl Shadows {
 impl Slots {
     /// Makes room for n samples and forgets the old ones.
     pub(super) fn reset(&mut self, n: usize, features: bool) {
-        self.key.clear();
         self.sample.clear();
         self.center.iter_mut().for_each(Vec::clear);
         let fill = |a: &mut Vec<f32>, n: usize, value: f32| {
@@ -261,8 +273,7 @@ impl Slots {
 
     /// Gives the next slot a sample of a pixel.
     #[inline(always)]
-    pub(super) fn push(&mut self, key: u32, sample: u32, [x, y]: [u32; 2]) {
-        self.key.push(key);
+    pub(super) fn push(&mut self, sample: u32, [x, y]: [u32; 2]) {
         self.sample.push(sample);
         self.center[0].push(x as f32 + 0.5);
         self.center[1].push(y as f32 + 0.5);
