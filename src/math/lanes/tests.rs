@@ -5,7 +5,7 @@
     reason = "each backend runs in an entry of its instruction set"
 )]
 
-use super::{Lanes, WideLanes, baseline, portable};
+use super::{BitLanes, Lanes, MOST, WideLanes, Words, baseline, portable};
 
 /// Signs, zeros, denormals, halfway cases of rounding, infinities and NaN.
 const VALUES: [f32; 16] = [
@@ -212,6 +212,91 @@ fn children_are_sorted_by_falling_keys() {
         if Isa::available(Level::Avx2).is_some() {
             // SAFETY: just asked.
             unsafe { sorts_on_avx2(&keys) };
+        }
+    }
+}
+
+/// Bits of every operation that only stages have on lanes that hold `a[i]` and `b[i]`, lane by lane.
+#[inline(always)]
+fn bit_operations<L: BitLanes>(a: &[f32; 16], b: &[f32; 16]) -> Vec<[u32; 14]> {
+    let words = |from: &[f32; 16]| from.map(|x| x.to_bits().wrapping_mul(0x9e37_79b9));
+    let (v, w) = (words(a), words(b));
+    let mut out = vec![[0; 14]; 16];
+    let mut at = 0;
+    while at < 16 {
+        let [x, y] = [L::load(&a[at..]), L::load(&b[at..])];
+        let [m, n]: [L::Bits; 2] = [Words::load(&v[at..]), Words::load(&w[at..])];
+        let index: [u32; MOST] = std::array::from_fn(|i| v[(at + i) % 16] >> 28);
+        let small = m.down::<9>();
+        let numbers = [
+            L::from_bits(m.plus(n)),
+            L::from_bits(m.times(n)),
+            L::from_bits(m.xor(n)),
+            L::from_bits(m.and(n)),
+            L::from_bits(m.or(n)),
+            L::from_bits(m.up::<5>()),
+            L::from_bits(m.down::<7>()),
+            L::from_bits(m.reversed()),
+            L::from_bits(x.to_bits().xor(Words::splat(1 << 31))),
+            L::from_words(small),
+            L::from_bits((L::from_words(small) * L::splat(0.37)).to_words()),
+            L::select(L::wide_lt(x.widen(), y.widen()), x, y),
+            L::gather(a, &index),
+            L::from_bits(Words::gather(&v, &index)),
+        ];
+        let mut lanes = [0.0; MOST];
+        for (k, value) in numbers.iter().enumerate() {
+            value.store(&mut lanes);
+            (0..L::N).for_each(|i| out[at + i][k] = lanes[i].to_bits());
+        }
+        for chosen in 0..1 << L::N.min(8) {
+            let (mut floats, mut words) = ([0.0; MOST], [0; MOST]);
+            x.pack(chosen, &mut floats);
+            n.pack(chosen, &mut words);
+            let members = (0..L::N).filter(|i| chosen >> i & 1 == 1);
+            for (to, from) in members.enumerate() {
+                assert_eq!(floats[to].to_bits(), a[at + from].to_bits(), "{chosen:b}");
+                assert_eq!(words[to], w[at + from], "{chosen:b}");
+            }
+        }
+        at += L::N;
+    }
+    out
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
+fn bits_on_avx2(a: &[f32; 16], b: &[f32; 16]) -> Vec<[u32; 14]> {
+    bit_operations::<super::avx2::F32x8>(a, b)
+}
+
+#[test]
+fn every_backend_has_the_bits_of_one_lane() {
+    use crate::trace::isa::{Isa, Level};
+    for turn in 0..16 {
+        let a = VALUES;
+        let mut b = VALUES;
+        b.rotate_left(turn);
+        let expected = bit_operations::<f32>(&a, &b);
+        assert_eq!(
+            bit_operations::<portable::F32x8>(&a, &b),
+            expected,
+            "{turn}"
+        );
+        assert_eq!(
+            bit_operations::<baseline::F32x4>(&a, &b),
+            expected,
+            "{turn}"
+        );
+        assert_eq!(
+            bit_operations::<baseline::F32x8>(&a, &b),
+            expected,
+            "{turn}"
+        );
+        #[cfg(target_arch = "x86_64")]
+        if Isa::available(Level::Avx2).is_some() {
+            // SAFETY: just asked.
+            assert_eq!(unsafe { bits_on_avx2(&a, &b) }, expected, "{turn}");
         }
     }
 }
