@@ -64,7 +64,14 @@ pub fn instance_normal(instance: &Instance, n: [f32; 3]) -> [f32; 3] {
 
 #[inline(always)]
 fn one_lane(matrix: &[[f32; 4]; 3]) -> [[[f32; 1]; 4]; 3] {
-    matrix.map(|row| row.map(|x| [x]))
+    // Not by `array::map`, which is not inlined.
+    let mut lanes = [[[0.0]; 4]; 3];
+    for row in 0..3 {
+        for column in 0..4 {
+            lanes[row][column] = [matrix[row][column]];
+        }
+    }
+    lanes
 }
 
 /// The point of a sphere that a ray meets at `t`, with its outward unit normal: o + t d reprojected to C + r n in f64, then

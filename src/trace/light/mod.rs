@@ -64,48 +64,12 @@ pub(super) fn sample_lights<L: BitLanes>(
         }
         return sample_spheres(scene, from, &Chosen::each(scene, &chosen), u);
     }
-    one_by_one(scene, from, &chosen, u)
-}
-
-/// Which light a number in (0, 1) chooses.
-#[inline(always)]
-fn choose(lights: &Lights, number: f32) -> u32 {
-    let target = f64::from(number) * lights.total();
-    let chosen = lights.cumulative.partition_point(|&sum| sum <= target);
-    chosen.min(lights.len() - 1) as u32
-}
-
-/// Lights of several kinds, lane by lane.
-#[inline(never)]
-fn one_by_one<L: BitLanes>(
-    scene: &FlatScene,
-    V3(from): V3<L>,
-    chosen: &[u32; WIDEST],
-    u: [L; 2],
-) -> LightSample<L> {
     let mut numbers = [[0.0; WIDEST]; 5];
-    for (lanes, array) in from.into_iter().chain(u).zip(&mut numbers) {
+    for (lanes, array) in from.0.into_iter().chain(u).zip(&mut numbers) {
         lanes.store(array);
     }
     let mut samples = [[0.0; WIDEST]; 8];
-    let [mut punctual, mut valid] = [0; 2];
-    for lane in 0..L::N {
-        let [x, y, z, u0, u1] = numbers.map(|array| array[lane]);
-        let chosen = chosen[lane] as usize;
-        let Some(sample) = sample_light(scene, Vec3::new(x, y, z), chosen, [u0, u1]) else {
-            continue;
-        };
-        let (dir, radiance) = (sample.dir.0, sample.radiance.0);
-        let all = dir
-            .into_iter()
-            .chain(radiance)
-            .chain([sample.t_max, sample.pdf]);
-        for (array, x) in samples.iter_mut().zip(all) {
-            array[lane] = x;
-        }
-        punctual |= sample.punctual << lane;
-        valid |= 1 << lane;
-    }
+    let (valid, punctual) = one_by_one(scene, &chosen[..L::N], &numbers, &mut samples);
     let [x, y, z, r, g, b, t_max, pdf] = &samples;
     let load = |array: &[f32; WIDEST]| L::load(array);
     LightSample {
@@ -116,6 +80,41 @@ fn one_by_one<L: BitLanes>(
         punctual,
         valid,
     }
+}
+
+/// Which light a number in (0, 1) chooses.
+#[inline(always)]
+fn choose(lights: &Lights, number: f32) -> u32 {
+    let target = f64::from(number) * lights.total();
+    let chosen = lights.cumulative.partition_point(|&sum| sum <= target);
+    chosen.min(lights.len() - 1) as u32
+}
+
+/// Lights of several kinds, lane by lane: from position and numbers to direction, radiance, end and density. Returns which
+/// lanes are valid, and which are punctual.
+#[inline(never)]
+fn one_by_one(
+    scene: &FlatScene,
+    chosen: &[u32],
+    numbers: &[[f32; WIDEST]; 5],
+    samples: &mut [[f32; WIDEST]; 8],
+) -> (u32, u32) {
+    let [mut valid, mut punctual] = [0; 2];
+    for (lane, &chosen) in chosen.iter().enumerate() {
+        let [x, y, z, u0, u1] = numbers.map(|array| array[lane]);
+        let from = Vec3::new(x, y, z);
+        let Some(sample) = sample_light(scene, from, chosen as usize, [u0, u1]) else {
+            continue;
+        };
+        let (V3([x, y, z]), V3([r, g, b])) = (sample.dir, sample.radiance);
+        let all = [x, y, z, r, g, b, sample.t_max, sample.pdf];
+        for (array, x) in samples.iter_mut().zip(all) {
+            array[lane] = x;
+        }
+        valid |= 1 << lane;
+        punctual |= sample.punctual << lane;
+    }
+    (valid, punctual)
 }
 
 /// Samples a light of the table; `None` where it sends nothing there.
