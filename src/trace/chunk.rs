@@ -88,12 +88,9 @@ impl Chunk {
     }
 
     #[inline(always)]
-    pub(super) fn vector<L: BitLanes>(&self, arrays: &[Vec<f32>; 3]) -> V3<L> {
-        V3([
-            self.lanes(&arrays[0]),
-            self.lanes(&arrays[1]),
-            self.lanes(&arrays[2]),
-        ])
+    pub(super) fn vector<L: BitLanes>(&self, [x, y, z]: &[impl AsRef<[f32]>; 3]) -> V3<L> {
+        let lanes = |array: &[f32]| self.lanes(array);
+        V3([lanes(x.as_ref()), lanes(y.as_ref()), lanes(z.as_ref())])
     }
 
     /// Overwrites the paths' elements.
@@ -110,9 +107,10 @@ impl Chunk {
     }
 
     #[inline(always)]
-    pub(super) fn put_vector<L: BitLanes>(&self, V3(v): V3<L>, to: &mut [Vec<f32>; 3]) {
-        for (lanes, to) in v.into_iter().zip(to) {
-            self.put(lanes, to);
-        }
+    pub(super) fn put_vector<L: BitLanes>(&self, V3(v): V3<L>, to: &mut [impl AsMut<[f32]>; 3]) {
+        let [x, y, z] = to;
+        self.put(v[0], x.as_mut());
+        self.put(v[1], y.as_mut());
+        self.put(v[2], z.as_mut());
     }
 }

@@ -1,9 +1,13 @@
 //! Tracing: loops over SoA ray batches and path state. Takes a [`crate::flat::FlatScene`] and a lent slice, gives
 //! radiance samples. Infallible.
 //!
-//! A wave of paths goes through stages that are loops: generate → closest hit → surface → emission → sort by material →
-//! sample light → occluded → sample bsdf → roulette and compact → accumulate. Scenes that need it have two more: opacity
-//! after closest hit (and in place of occluded), and vertex colours after surface.
+//! A wave of paths goes through stages that are loops: generate → closest hit → group and surface → emission → sample
+//! light → occluded → sample bsdf → roulette and compact → accumulate. Scenes that need it have more: opacity after
+//! closest hit (and in place of occluded), textures and vertex colours after surface.
+//!
+//! Stages run over lanes of paths, as kernels over lanes of boxes: each is written once, generic over
+//! `math::lanes::BitLanes`, and one lane is the scalar stage; `stages` has their entries. Lights of several kinds, textures,
+//! emission and opacity go path by path.
 //!
 //! Deliberately absent: hecs, files, images, rayon, recursion, allocation per ray, locks.
 

@@ -20,7 +20,7 @@ pub(super) fn roulette<L: BitLanes>(wave: &mut Wave, bounce: Bounce) {
         if L::bits(safe) & chunk.members() == chunk.members() {
             continue;
         }
-        let numbers = Numbers::<L>::new(wave, bounce, &chunk);
+        let numbers = Numbers::<L>::new((&wave.paths.key, &wave.paths.sample), bounce, &chunk);
         let [u, _] = numbers.pair(Pair::Roulette(bounce.index));
         let lives = L::bits(u.lt(survival)) | L::bits(safe);
         let raised = L::select(safe, one, one / survival);

@@ -5,11 +5,12 @@
 
 use super::chunk::{Chunk, WIDEST};
 use super::fresnel::{dielectrics, metal};
+use super::groups::Groups;
 use super::light::{LightSample, sample_lights as sample_table};
 use super::sampler::{Pair, sample_pairs};
 use super::spawn::lanes::offset_origin;
 use super::vector::{V3, cosine_hemisphere, reflect};
-use super::wave::Wave;
+use super::wave::{Shadows, Wave};
 use super::{Fresnel, TraceOptions};
 use crate::flat::{FlatScene, Scatter};
 use crate::math::lanes::{BitLanes, Lanes};
@@ -22,6 +23,61 @@ pub(super) struct Bounce<'a> {
     pub(super) options: &'a TraceOptions,
     /// 0 = at the first hit.
     pub(super) index: u32,
+}
+
+/// The arrays of a wave's paths, cut to one length, so that a chunk is checked against it once.
+struct Columns<'a> {
+    origin: [&'a mut [f32]; 3],
+    dir: [&'a mut [f32]; 3],
+    throughput: [&'a mut [f32]; 3],
+    pdf: &'a mut [f32],
+    eta2: &'a mut [f32],
+    slot: &'a [u32],
+    key: &'a [u32],
+    sample: &'a [u32],
+    err: &'a [f32],
+    position: [&'a [f32]; 3],
+    ng: [&'a [f32]; 3],
+    ns: [&'a [f32]; 3],
+    color: [&'a [f32]; 3],
+    material: &'a [u32],
+    alive: &'a mut [bool],
+}
+
+impl<'a> Columns<'a> {
+    #[inline(always)]
+    fn new(wave: &'a mut Wave) -> (Columns<'a>, &'a Groups, &'a mut Shadows) {
+        let n = wave.paths.len();
+        let (paths, surfaces) = (&mut wave.paths, &wave.surfaces);
+        let columns = Columns {
+            origin: cut_mut(&mut paths.rays.origin, n),
+            dir: cut_mut(&mut paths.rays.dir, n),
+            throughput: cut_mut(&mut paths.throughput, n),
+            pdf: &mut paths.pdf[..n],
+            eta2: &mut paths.eta2[..n],
+            slot: &paths.slot[..n],
+            key: &paths.key[..n],
+            sample: &paths.sample[..n],
+            err: &wave.hits.err[..n],
+            position: cut(&surfaces.position, n),
+            ng: cut(&surfaces.ng, n),
+            ns: cut(&surfaces.ns, n),
+            color: cut(&surfaces.color, n),
+            material: &surfaces.material[..n],
+            alive: &mut wave.alive[..n],
+        };
+        (columns, &wave.groups, &mut wave.shadows)
+    }
+}
+
+#[inline(always)]
+fn cut([x, y, z]: &[Vec<f32>; 3], n: usize) -> [&[f32]; 3] {
+    [&x[..n], &y[..n], &z[..n]]
+}
+
+#[inline(always)]
+fn cut_mut([x, y, z]: &mut [Vec<f32>; 3], n: usize) -> [&mut [f32]; 3] {
+    [&mut x[..n], &mut y[..n], &mut z[..n]]
 }
 
 /// The surroundings of paths, turned to the side that each came from.
@@ -49,19 +105,18 @@ struct Scattered<L: BitLanes> {
 
 impl<L: BitLanes> Local<L> {
     #[inline(always)]
-    fn new(wave: &Wave, chunk: &Chunk) -> Local<L> {
-        let wo = -chunk.vector(&wave.paths.rays.dir);
-        let s = &wave.surfaces;
-        let (ng, ns) = (chunk.vector(&s.ng), chunk.vector(&s.ns));
+    fn new(columns: &Columns, chunk: &Chunk) -> Local<L> {
+        let wo = -chunk.vector(&columns.dir);
+        let (ng, ns) = (chunk.vector(&columns.ng), chunk.vector(&columns.ns));
         let outside = L::splat(0.0).le(wo.dot(ng));
         let side = L::select(outside, L::splat(1.0), L::splat(-1.0));
         Local {
             wo,
             ng: ng * side,
             ns: ns * side,
-            position: chunk.vector(&s.position),
-            err: chunk.lanes(&wave.hits.err),
-            color: chunk.vector(&s.color),
+            position: chunk.vector(&columns.position),
+            err: chunk.lanes(columns.err),
+            color: chunk.vector(&columns.color),
             outside,
         }
     }
@@ -122,12 +177,11 @@ struct Plastic<L: BitLanes> {
 
 impl<L: BitLanes> Plastic<L> {
     #[inline(always)]
-    fn new(bounce: Bounce, wave: &Wave, chunk: &Chunk, local: &Local<L>) -> Plastic<L> {
+    fn new(bounce: Bounce, columns: &Columns, chunk: &Chunk, local: &Local<L>) -> Plastic<L> {
         let mode = bounce.options.fresnel;
         let [mut iors, mut reflectances] = [[0.0; WIDEST]; 2];
         for lane in 0..L::N {
-            let material =
-                &bounce.scene.materials[chunk.at(&wave.surfaces.material, lane) as usize];
+            let material = &bounce.scene.materials[chunk.at(columns.material, lane) as usize];
             (iors[lane], reflectances[lane]) = (material.ior, material.internal_reflectance);
         }
         let (ior, internal) = (L::load(&iors), L::load(&reflectances));
@@ -162,33 +216,30 @@ impl<L: BitLanes> Plastic<L> {
 #[inline(always)]
 pub(super) fn sample_lights<L: BitLanes>(wave: &mut Wave, bounce: Bounce) {
     let kinds = [Scatter::Diffuse, Scatter::Plastic];
-    let most: usize = kinds
-        .iter()
-        .map(|&k| wave.groups.by_scatter[k as usize].len())
-        .sum();
-    wave.shadows.reserve(most);
+    let (columns, groups, shadows) = Columns::new(wave);
+    let lists = kinds.map(|kind| groups.by_scatter[kind as usize].as_slice());
+    shadows.reserve(lists[0].len() + lists[1].len());
     let mut len = 0;
-    for kind in kinds {
-        for first in (0..wave.groups.by_scatter[kind as usize].len()).step_by(L::N) {
-            let chunk = Chunk::new::<L>(&wave.groups.by_scatter[kind as usize][first..]);
-            len += sample_light::<L>(wave, bounce, kind, &chunk, len);
+    for (kind, list) in kinds.into_iter().zip(lists) {
+        for chunk in Chunk::all::<L>(list) {
+            len += sample_light::<L>(&columns, shadows, bounce, (kind, &chunk), len);
         }
     }
-    wave.shadows.truncate(len);
+    shadows.truncate(len);
 }
 
 /// One chunk of it: writes its shadow rays from `at` on, returns how many.
 #[inline(always)]
 fn sample_light<L: BitLanes>(
-    wave: &mut Wave,
+    columns: &Columns,
+    shadows: &mut Shadows,
     bounce: Bounce,
-    kind: Scatter,
-    chunk: &Chunk,
+    (kind, chunk): (Scatter, &Chunk),
     at: usize,
 ) -> usize {
-    let local = Local::<L>::new(wave, chunk);
+    let local = Local::<L>::new(columns, chunk);
     let origin = local.origin(local.ng);
-    let light = light_from(wave, bounce, chunk, origin);
+    let light = light_from(columns, bounce, chunk, origin);
     let cos = local.cosine(light.dir);
     let valid = light.valid & L::bits(L::splat(0.0).lt(cos)) & chunk.members();
     if valid == 0 {
@@ -198,7 +249,7 @@ fn sample_light<L: BitLanes>(
     let (f_pi, share) = if kind == Scatter::Diffuse {
         (local.color, L::splat(1.0))
     } else {
-        let plastic = Plastic::new(bounce, wave, chunk, &local);
+        let plastic = Plastic::new(bounce, columns, chunk, &local);
         (plastic.eval_base(cos), L::splat(1.0) - plastic.coat_share)
     };
     let mut weight = L::splat(1.0);
@@ -211,21 +262,21 @@ fn sample_light<L: BitLanes>(
         let extended = L::splat(0.0).lt(L::load(&extended));
         weight = L::select(extended, weight, L::splat(1.0));
     }
-    let throughput: V3<L> = chunk.vector(&wave.paths.throughput);
+    let throughput: V3<L> = chunk.vector(&columns.throughput);
     let radiance = throughput * f_pi * light.radiance * (per_pi * cos * weight / light.pdf);
-    let slots = chunk.words::<L>(&wave.paths.slot);
+    let slots = chunk.words::<L>(columns.slot);
     let ray = (origin, light.dir, light.t_max);
-    wave.shadows.pack(at, valid, ray, radiance, slots)
+    shadows.pack(at, valid, ray, radiance, slots)
 }
 
 #[inline(always)]
 fn light_from<L: BitLanes>(
-    wave: &Wave,
+    columns: &Columns,
     bounce: Bounce,
     chunk: &Chunk,
     origin: V3<L>,
 ) -> LightSample<L> {
-    let numbers = Numbers::<L>::new(wave, bounce, chunk);
+    let numbers = Numbers::<L>::new((columns.key, columns.sample), bounce, chunk);
     // One light needs no choice.
     let choice = || numbers.pair(Pair::Choice(bounce.index))[0];
     let u = numbers.pair(Pair::Light(bounce.index));
@@ -241,11 +292,15 @@ pub(super) struct Numbers<L: BitLanes> {
 
 impl<L: BitLanes> Numbers<L> {
     #[inline(always)]
-    pub(super) fn new(wave: &Wave, bounce: Bounce, chunk: &Chunk) -> Numbers<L> {
+    pub(super) fn new(
+        (key, sample): (&[u32], &[u32]),
+        bounce: Bounce,
+        chunk: &Chunk,
+    ) -> Numbers<L> {
         Numbers {
             sampler: bounce.options.sampler,
-            key: chunk.words::<L>(&wave.paths.key),
-            sample: chunk.words::<L>(&wave.paths.sample),
+            key: chunk.words::<L>(key),
+            sample: chunk.words::<L>(sample),
         }
     }
 
@@ -258,10 +313,10 @@ impl<L: BitLanes> Numbers<L> {
 /// Samples the bsdf of every path of one kind: its next ray, its throughput, or its end.
 #[inline(always)]
 pub(super) fn sample_bsdf<L: BitLanes>(wave: &mut Wave, bounce: Bounce, kind: Scatter) {
-    for first in (0..wave.groups.by_scatter[kind as usize].len()).step_by(L::N) {
-        let chunk = Chunk::new::<L>(&wave.groups.by_scatter[kind as usize][first..]);
-        let local = Local::<L>::new(wave, &chunk);
-        let numbers = || Numbers::<L>::new(wave, bounce, &chunk);
+    let (mut columns, groups, _) = Columns::new(wave);
+    for chunk in Chunk::all::<L>(&groups.by_scatter[kind as usize]) {
+        let local = Local::<L>::new(&columns, &chunk);
+        let numbers = || Numbers::<L>::new((columns.key, columns.sample), bounce, &chunk);
         let scattered = match kind {
             Scatter::Nothing => return,
             Scatter::Diffuse => {
@@ -271,34 +326,33 @@ pub(super) fn sample_bsdf<L: BitLanes>(wave: &mut Wave, bounce: Bounce, kind: Sc
             Scatter::Metal => mirrored(&local, metal(local.color, local.incidence())),
             Scatter::Glass => {
                 let [_, lobe] = numbers().pair(Pair::Choice(bounce.index));
-                sample_glass(bounce, wave, &chunk, &local, lobe)
+                sample_glass(bounce, &columns, &chunk, &local, lobe)
             }
             Scatter::Plastic => {
                 let numbers = numbers();
                 let [_, lobe] = numbers.pair(Pair::Choice(bounce.index));
-                let plastic = Plastic::new(bounce, wave, &chunk, &local);
+                let plastic = Plastic::new(bounce, &columns, &chunk, &local);
                 let u = numbers.pair(Pair::Direction(bounce.index));
                 sample_plastic(&plastic, &local, lobe, u)
             }
         };
-        follow(wave, &chunk, &local, &scattered);
+        follow(&mut columns, &chunk, &local, &scattered);
     }
 }
 
 /// Sends paths on their way; those that carry nothing end.
 #[inline(always)]
-fn follow<L: BitLanes>(wave: &mut Wave, chunk: &Chunk, local: &Local<L>, s: &Scattered<L>) {
+fn follow<L: BitLanes>(c: &mut Columns, chunk: &Chunk, local: &Local<L>, s: &Scattered<L>) {
     let alive = L::bits(s.weight.any_positive());
-    let paths = &mut wave.paths;
-    chunk.put_vector(local.origin(s.dir), &mut paths.rays.origin);
-    chunk.put_vector(s.dir, &mut paths.rays.dir);
-    let throughput = chunk.vector(&paths.throughput) * s.weight;
-    chunk.put_vector(throughput, &mut paths.throughput);
-    chunk.put(s.pdf, &mut paths.pdf);
-    let eta2 = chunk.lanes::<L>(&paths.eta2) * s.eta2;
-    chunk.put(eta2, &mut paths.eta2);
+    chunk.put_vector(local.origin(s.dir), &mut c.origin);
+    chunk.put_vector(s.dir, &mut c.dir);
+    let throughput = chunk.vector(&c.throughput) * s.weight;
+    chunk.put_vector(throughput, &mut c.throughput);
+    chunk.put(s.pdf, c.pdf);
+    let eta2 = chunk.lanes::<L>(c.eta2) * s.eta2;
+    chunk.put(eta2, c.eta2);
     for (lane, &i) in chunk.index().iter().enumerate() {
-        wave.alive[i as usize] = alive >> lane & 1 == 1;
+        c.alive[i as usize] = alive >> lane & 1 == 1;
     }
 }
 
@@ -331,14 +385,14 @@ fn sample_diffuse<L: BitLanes>(local: &Local<L>, u: [L; 2]) -> Scattered<L> {
 #[inline(always)]
 fn sample_glass<L: BitLanes>(
     bounce: Bounce,
-    wave: &Wave,
+    columns: &Columns,
     chunk: &Chunk,
     local: &Local<L>,
     lobe: L,
 ) -> Scattered<L> {
     let mut iors = [0.0; WIDEST];
     for lane in 0..L::N {
-        let material = chunk.at(&wave.surfaces.material, lane) as usize;
+        let material = chunk.at(columns.material, lane) as usize;
         iors[lane] = bounce.scene.materials[material].ior;
     }
     let [zero, one] = [L::splat(0.0), L::splat(1.0)];
