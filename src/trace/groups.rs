@@ -2,10 +2,8 @@
 //! which also looks up materials and their constant colours.
 
 use super::Hits;
-use super::vector::set;
 use super::wave::Wave;
 use crate::flat::{ColorSource, FlatScene, Scatter, Spheres};
-use crate::math::Vec3;
 
 /// Paths by what became of them, as indices that rise.
 #[derive(Debug, Default)]
@@ -64,11 +62,17 @@ pub(super) fn group(wave: &mut Wave, scene: &FlatScene) {
         ..
     } = wave;
     groups.clear();
-    surfaces.reserve(paths.len());
+    let n = paths.len();
+    surfaces.reserve(n);
     alive.clear();
-    alive.resize(paths.len(), false);
-    for i in 0..paths.len() {
-        if hits.prim[i] == Hits::NONE {
+    alive.resize(n, false);
+    // Cut to one length, so that i is compared with it once.
+    let (prims, alive) = (&hits.prim[..n], &mut alive[..n]);
+    let [r, g, b] = &mut surfaces.color;
+    let [r, g, b] = [&mut r[..n], &mut g[..n], &mut b[..n]];
+    let ids = &mut surfaces.material[..n];
+    for i in 0..n {
+        if prims[i] == Hits::NONE {
             groups.missed.push(i as u32);
             continue;
         }
@@ -77,17 +81,17 @@ pub(super) fn group(wave: &mut Wave, scene: &FlatScene) {
         let material = &scene.materials[id as usize];
         groups.by_shape[shape as usize].push(i as u32);
         groups.by_scatter[material.scatter as usize].push(i as u32);
-        alive[i] = material.scatter != Scatter::Nothing;
-        let [r, g, b] = material.emission;
-        if r.max(g).max(b) > 0.0 {
+        let scatters = material.scatter != Scatter::Nothing;
+        alive[i] = scatters;
+        let [er, eg, eb] = material.emission;
+        if (er > 0.0) | (eg > 0.0) | (eb > 0.0) {
             groups.at_emitters.push(i as u32);
         }
-        surfaces.material[i] = id;
-        let color = match material.color {
-            ColorSource::Constant(c) if alive[i] => Vec3::from(c),
-            _ => Vec3::ZERO,
+        ids[i] = id;
+        [r[i], g[i], b[i]] = match material.color {
+            ColorSource::Constant(color) if scatters => color,
+            _ => [0.0; 3],
         };
-        set(&mut surfaces.color, i, color);
     }
 }
 
