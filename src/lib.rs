@@ -67,6 +67,9 @@
 //! * Which traversal runs is read off the buffers, not off [`flat::Needs`], whose `triangles` also counts those of instances.
 //! * A triangle hit is in front of the ray if the triangle's box is, or else if t has that sign in f64: refusing it where t
 //!   is smaller than its error bound lost one path in 10⁵ bounces in the corners of a closed box.
+//! * Weights of a hit so near an edge that rounding may take the position past it are moved inward by three error bounds
+//!   (`trace::kernels::inward`), before anything reads them: bounds along the normal do not see rounding along the surface,
+//!   by which a path in 10⁷ bounces left closed rooms.
 //! * Box tests do not fuse: they are the formula of the clamp itself, so that a node contains its primitives' intervals to
 //!   the bit without slack; fused tests with slack took no less time.
 //! * Trees of triangles alone and of spheres alone have kernels of their own; all others share one set, and trees under

@@ -1,6 +1,7 @@
 //! A5, A9, A10, A12 and A14: rays that leave triangles, and triangles that are far too small, too large or too many.
 
 use crate::book::{Outcome, items};
+use crate::rooms;
 use crate::support::leave::{returns, surface};
 use crate::support::shoot::{best, misses, ray};
 use crate::support::{Parts, Rng, Solid};
@@ -60,54 +61,10 @@ fn a9_self_hits(trials: u64) -> Outcome {
     outcome
 }
 
-/// Convex to the bit wherever they stand: corners at small integers.
-fn convex() -> [Solid; 2] {
-    let p = |[x, y, z]: [i32; 3]| Vec3::new(x as f32, y as f32, z as f32);
-    let axes = [
-        [2, 0, 0],
-        [-2, 0, 0],
-        [0, 2, 0],
-        [0, -2, 0],
-        [0, 0, 2],
-        [0, 0, -2],
-    ];
-    let octahedron = Solid {
-        vertices: axes.map(p).to_vec(),
-        faces: vec![
-            [0, 2, 4],
-            [2, 1, 4],
-            [1, 3, 4],
-            [3, 0, 4],
-            [2, 0, 5],
-            [1, 2, 5],
-            [3, 1, 5],
-            [0, 3, 5],
-        ],
-    };
-    let side = |k: usize, bit: usize| if k >> bit & 1 == 1 { 1 } else { -1 };
-    let corners = (0..8).map(|k| p([side(k, 0), side(k, 1), side(k, 2)]));
-    let quads = [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ];
-    let cube = Solid {
-        vertices: corners.collect(),
-        faces: quads
-            .iter()
-            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
-            .collect(),
-    };
-    [octahedron, cube]
-}
-
 fn a10_neighbours(trials: u64) -> Outcome {
     let mut rng = Rng(22);
     let mut cases: Vec<(Solid, Vec3)> = Vec::new();
-    for solid in convex() {
+    for solid in [rooms::octahedron(), rooms::cube()] {
         for size in [2f32.powi(-20), 1.0, 2f32.powi(20)] {
             for away in [0.0, 1024.0, 131_072.0] {
                 let offset = Vec3::new(away, -away, 0.5 * away) * size;

@@ -18,7 +18,7 @@ items! {
 /// Pixels of a furnace's picture, which say nothing but more samples.
 const SIDE: u32 = 8;
 
-fn bare(max_bounces: u32) -> TraceOptions {
+pub(crate) fn bare(max_bounces: u32) -> TraceOptions {
     TraceOptions {
         nee: false,
         roulette: false,
@@ -63,13 +63,18 @@ fn deviations(scene: &FlatScene, options: &TraceOptions, spp: u64, value: f32) -
 }
 
 /// A furnace in which every sample must be `value`.
-fn deviating(scene: &FlatScene, options: &TraceOptions, spp: u64, value: f32) -> Outcome {
+pub(crate) fn deviating(
+    scene: &FlatScene,
+    options: &TraceOptions,
+    spp: u64,
+    value: f32,
+) -> Outcome {
     let (trials, off) = deviations(scene, options, spp, value);
     Outcome::new(trials as usize, off.len())
 }
 
 /// What a path adds up, in f32 and in its order.
-fn series(albedo: f32, n: u32) -> f32 {
+pub(crate) fn series(albedo: f32, n: u32) -> f32 {
     let (mut sum, mut throughput) = (0.0f32, 1.0f32);
     for _ in 0..=n {
         sum += throughput;
@@ -100,7 +105,7 @@ fn six_spheres(name: &str, radius: f64, albedo: f32, more: &str) -> Stage {
     ))
 }
 
-fn camera() -> String {
+pub(crate) fn camera() -> String {
     format!(
         "camera: (at: (0.1, 0.2, 0.3), look_at: (0.4, -1, 0.7), vfov_deg: 120), render: (size: ({SIDE}, {SIDE})),"
     )

@@ -15,11 +15,13 @@
 //! |---|---|
 //! | A triangles: 1 edges, 2 vertices, 3 lattice, 4 far ball | `a_triangles` |
 //! | A5 powers of two, 9 self-hits, 10 neighbours, 12 gaps, 14 millions | `a_leaving` |
+//! | A15 edges from inside | `a_edges` |
 //! | A6 accuracy, 7 grazing, 8 degenerate, 11 coincident | `a_bounds` |
 //! | A13 sizes beyond f32 | `j_invariance` |
 //! | B spheres: 1 walls, 3 far and small, 4 grazing, 5 leaving, 6 nested, 8 normals | `b_spheres` |
 //! | B2 six walls | `g_transport` |
 //! | B7 touching, B9 as lights | `f_lights`, `light::radiance` |
+//! | C1 turned rooms | `c_rooms` |
 //! | C transforms | `tests/world.rs`, `kernels::leave`, `light::agreement` |
 //! | D trees: 1 corners, 2 zeros, 3 equality, 4 order, 6 bad rays, 7 work | `d_trees`; 1 also `trace::kernels::ray` |
 //! | D5 boxes contain what is in them (none are quantised) | `kernels::trees` |
@@ -42,10 +44,12 @@
 //! subnormal numbers (H6); footprints and horizons (I2, I5).
 
 mod a_bounds;
+mod a_edges;
 mod a_leaving;
 mod a_triangles;
 mod b_spheres;
 mod book;
+mod c_rooms;
 #[path = "../light/closed.rs"]
 #[allow(dead_code, reason = "the light tests use all of it")]
 mod closed;
@@ -63,6 +67,7 @@ mod objs;
 #[path = "../reference/mod.rs"]
 #[allow(dead_code, unused_imports, reason = "the light tests use all of it")]
 mod reference;
+mod rooms;
 mod scenes;
 #[path = "../light/stats.rs"]
 #[allow(dead_code, reason = "the light tests use all of it")]

@@ -246,7 +246,8 @@ impl Sink for Closest<'_> {
             if best.prim & Spheres::TAG != 0 || best.instance != Hits::WORLD {
                 let [o, d] = [&self.rays.origin, &self.rays.dir];
                 let ray = [[o[0][i], o[1][i], o[2][i]], [d[0][i], d[1][i], d[2][i]]];
-                hits.err[i] = bound::hit_error(self.scene, ray, best);
+                let (err, [u, v]) = bound::hit_error(self.scene, ray, best);
+                [hits.err[i], hits.u[i], hits.v[i]] = [err, u, v];
             }
         }
     }

@@ -1,7 +1,9 @@
 //! `Hits::err`: how far, along the geometric normal, the position that the surface stage computes may be from the surface,
-//! as the next ray's test sees it. The positions are those of [`crate::trace::spawn`].
+//! as the next ray's test sees it. The positions are those of [`crate::trace::spawn`]; of hits beside an edge they are moved
+//! first ([`super::inward`]).
 
 use super::batch::{MOST_LANES, load};
+use super::inward;
 use super::walk::Best;
 use crate::flat::{BLOCK, FlatScene, Instance, Spheres, Triangles};
 use crate::math::lanes::{Lanes, WideLanes};
@@ -54,24 +56,31 @@ pub(super) fn sphere_error<L: Lanes>(
     err + L::splat(WIDE) * size
 }
 
-/// The bound for a hit on a sphere or an instance; called once per ray, for the hit that stands.
+/// The bound for a hit on a sphere or an instance, and the hit's weights; called once per ray, for the hit that stands.
 #[inline(always)]
-pub(super) fn hit_error(scene: &FlatScene, ray: [[f32; 3]; 2], hit: &Best) -> f32 {
+pub(super) fn hit_error(scene: &FlatScene, ray: [[f32; 3]; 2], hit: &Best) -> (f32, [f32; 2]) {
+    let weights = [hit.u, hit.v];
     if hit.prim & Spheres::TAG != 0 {
         let i = (hit.prim & !Spheres::TAG) as usize;
         let [x, y, z] = scene.spheres.center[i];
         let center = [x as f32, y as f32, z as f32];
-        return sphere_error(ray, hit.t, center, scene.spheres.radius[i] as f32);
+        let err = sphere_error(ray, hit.t, center, scene.spheres.radius[i] as f32);
+        return (err, weights);
     }
     let instance = &scene.instances[hit.instance as usize];
     let local = &scene.local[instance.geometry as usize];
     let v = triangle_vertices(&local.triangles, hit.prim);
+    let weights = inward::step(
+        v,
+        weights,
+        inward::MARGIN * local_blur(instance, v, weights),
+    );
     let normal = instance_normal(instance, triangle_normal(v));
-    along(normal, instance_error(instance, v, hit.u, hit.v))
+    (along(normal, instance_error(instance, v, weights)), weights)
 }
 
 /// The bounds of all hits on triangles of the world, in lanes: (Σ |Nᵢ| Eᵢ) / |N| with the normal N in f64, since a sliver's
-/// cross product cancels; 0 for a triangle without area.
+/// cross product cancels; 0 for a triangle without area. Weights of hits beside an edge are moved first.
 #[inline(always)]
 pub(crate) fn world_errors<L: Lanes>(triangles: &Triangles, hits: &mut Hits) {
     let mut at = 0;
@@ -96,9 +105,23 @@ pub(crate) fn world_errors<L: Lanes>(triangles: &Triangles, hits: &mut Hits) {
             }
         }
         if found != 0 {
-            let [b1, b2]: [L; 2] = [load(&hits.u, at), load(&hits.v, at)];
+            let mut bounds = world_error::<L>(&v, [load(&hits.u, at), load(&hits.v, at)]);
+            let beside = L::bits(bounds.beside) & found;
+            if beside != 0 {
+                let mut margin = [0.0; MOST_LANES];
+                bounds.margin.store(&mut margin);
+                for lane in 0..lanes {
+                    if beside >> lane & 1 == 1 {
+                        let corners = v.map(|v| v.map(|axis| axis[lane]));
+                        let weights = [hits.u[at + lane], hits.v[at + lane]];
+                        [hits.u[at + lane], hits.v[at + lane]] =
+                            inward::step(corners, weights, margin[lane]);
+                    }
+                }
+                bounds = world_error::<L>(&v, [load(&hits.u, at), load(&hits.v, at)]);
+            }
             let mut err = [0.0; MOST_LANES];
-            world_error(&v, b1, b2).store(&mut err);
+            bounds.err.store(&mut err);
             for lane in 0..lanes {
                 if found >> lane & 1 == 1 {
                     hits.err[at + lane] = err[lane];
@@ -115,8 +138,17 @@ fn edge<L: Lanes>(v: &[[[f32; MOST_LANES]; 3]; 3], vertex: usize, axis: usize) -
     L::load(&v[vertex][axis]).widen() - L::load(&v[0][axis]).widen()
 }
 
+/// What is known of hits on triangles of the world.
+struct Bounds<L: Lanes> {
+    err: L,
+    /// How far inside its triangle each should be.
+    margin: L,
+    /// Which may be nearer to an edge: none that is so is missing.
+    beside: L::Mask,
+}
+
 #[inline(always)]
-fn world_error<L: Lanes>(v: &[[[f32; MOST_LANES]; 3]; 3], b1: L, b2: L) -> L {
+fn world_error<L: Lanes>(v: &[[[f32; MOST_LANES]; 3]; 3], [b1, b2]: [L; 2]) -> Bounds<L> {
     let b0 = L::splat(1.0) - b1 - b2;
     let (ax, ay, az) = (edge::<L>(v, 1, 0), edge::<L>(v, 1, 1), edge::<L>(v, 1, 2));
     let (bx, by, bz) = (edge::<L>(v, 2, 0), edge::<L>(v, 2, 1), edge::<L>(v, 2, 2));
@@ -124,16 +156,33 @@ fn world_error<L: Lanes>(v: &[[[f32; MOST_LANES]; 3]; 3], b1: L, b2: L) -> L {
     let one = L::Wide::splat(1.0);
     let mut sum = L::Wide::splat(0.0);
     let mut square = sum;
+    let mut blur = L::splat(0.0);
+    // Lengths of the edges by the sum of their components, which is no less.
+    let mut edges = [blur; 3];
     for axis in 0..3 {
-        let terms = (b0 * L::load(&v[0][axis])).abs()
-            + (b1 * L::load(&v[1][axis])).abs()
-            + (b2 * L::load(&v[2][axis])).abs();
+        let [p, q, r] = [
+            L::load(&v[0][axis]),
+            L::load(&v[1][axis]),
+            L::load(&v[2][axis]),
+        ];
+        let terms = (b0 * p).abs() + (b1 * q).abs() + (b2 * r).abs();
         let error = L::splat(gamma(7)) * terms;
         sum = sum + normal[axis].copysign(one) * error.widen();
         square = square + normal[axis] * normal[axis];
+        blur = blur + error;
+        edges[0] = edges[0] + (r - q).abs();
+        edges[1] = edges[1] + (p - r).abs();
+        edges[2] = edges[2] + (q - p).abs();
     }
     let length = square.sqrt().positive_or(L::Wide::splat(f64::INFINITY));
-    L::narrow(sum / length) * L::splat(1.0 + f32::EPSILON)
+    let margin = L::splat(inward::MARGIN) * blur;
+    let longest = edges[0].max(edges[1]).max(edges[2]);
+    let least = b0.min(b1).min(b2) * L::narrow(length);
+    Bounds {
+        err: L::narrow(sum / length) * L::splat(1.0 + f32::EPSILON),
+        margin,
+        beside: least.lt(margin * longest),
+    }
 }
 
 /// Σ |nᵢ| Eᵢ.
@@ -160,13 +209,9 @@ fn triangle_error(v: [[f32; 3]; 3], b1: f32, b2: f32) -> [f32; 3] {
 /// tested, |M| γ₆ (|W| |p'| + |w|) with W = M⁻¹ (four roundings of the product, one of its entries, one of slack). The
 /// same terms as in NVIDIA's OptiX toolkit, *SelfIntersectionAvoidance*.
 #[inline(always)]
-fn instance_error(instance: &Instance, v: [[f32; 3]; 3], b1: f32, b2: f32) -> [f32; 3] {
+fn instance_error(instance: &Instance, v: [[f32; 3]; 3], [b1, b2]: [f32; 2]) -> [f32; 3] {
     let local = triangle_point(v, b1, b2);
-    let world = instance_point(instance, local);
-    let mut inside = triangle_error(v, b1, b2);
-    for axis in 0..3 {
-        inside[axis] += gamma(6) * magnitude(instance.to_local[axis], world);
-    }
+    let inside = local_error(instance, v, [b1, b2]);
     let mut error = [0.0; 3];
     for axis in 0..3 {
         let m = instance.to_world[axis];
@@ -176,6 +221,35 @@ fn instance_error(instance: &Instance, v: [[f32; 3]; 3], b1: f32, b2: f32) -> [f
             + m[2].abs() * inside[2];
     }
     error
+}
+
+/// The part of that bound that arises in the local space.
+#[inline(always)]
+fn local_error(instance: &Instance, v: [[f32; 3]; 3], [b1, b2]: [f32; 2]) -> [f32; 3] {
+    let world = instance_point(instance, triangle_point(v, b1, b2));
+    let mut inside = triangle_error(v, b1, b2);
+    for axis in 0..3 {
+        inside[axis] += gamma(6) * magnitude(instance.to_local[axis], world);
+    }
+    inside
+}
+
+/// The sum over the components of how far, in the local space, a position and the start of the next ray may be from where
+/// the weights say: what arises there, and γ₇ (|M| |p| + |m|), γ₃ for the position and the rest for that start.
+#[inline(always)]
+fn local_blur(instance: &Instance, v: [[f32; 3]; 3], weights: [f32; 2]) -> f32 {
+    let local = triangle_point(v, weights[0], weights[1]);
+    let inside = local_error(instance, v, weights);
+    let world = instance
+        .to_world
+        .map(|row| gamma(7) * magnitude(row, local));
+    let mut blur = 0.0;
+    for axis in 0..3 {
+        let w = &instance.to_local[axis];
+        blur +=
+            inside[axis] + w[0].abs() * world[0] + w[1].abs() * world[1] + w[2].abs() * world[2];
+    }
+    blur
 }
 
 /// |row| · (|p|, 1).

@@ -25,6 +25,7 @@ pub(crate) mod bound;
 mod entries;
 mod group;
 mod instances;
+mod inward;
 mod packet;
 mod prepared;
 pub(crate) mod ray;
