@@ -32,6 +32,27 @@ pub(crate) struct Account<'a> {
     pub(crate) tree: &'static str,
 }
 
+/// Says how many samples were not finite, and which some of them are; `None` for none.
+pub(crate) fn lost(count: u64, some: &[NonFinite]) -> Option<String> {
+    let name = |n: &NonFinite| {
+        let (x, y) = n.pixel;
+        format!(
+            "\n  frame {}, pixel ({x}, {y}), sample {}, bounce {}",
+            n.frame, n.sample, n.bounce
+        )
+    };
+    let named: String = some.iter().take(TOLD).map(name).collect();
+    let rest = match count.saturating_sub(TOLD as u64) {
+        0 => String::new(),
+        rest => format!("\n  and {rest} more"),
+    };
+    (count > 0).then(|| {
+        format!(
+            "{count} samples were not finite and were left out of their pixels' means:{named}{rest}"
+        )
+    })
+}
+
 impl Account<'_> {
     /// One line: `room.png · 512×512 · 64 spp · 3.1 s · 12.3 Mrays/s · extract 100 µs, flatten 2 ms, tree 8 ms · 12 MB`,
     /// the last being what the files and the buffers take.
@@ -54,22 +75,7 @@ impl Account<'_> {
 
     /// How many samples were not finite, and which; `None` if all were.
     pub(crate) fn lost(&self) -> Option<String> {
-        let count = self.film.total_non_finite();
-        let name = |n: &NonFinite| {
-            let (x, y) = n.pixel;
-            format!(
-                "\n  frame {}, pixel ({x}, {y}), sample {}, bounce {}",
-                n.frame, n.sample, n.bounce
-            )
-        };
-        let named: String = self.non_finite.iter().take(TOLD).map(name).collect();
-        let rest = match count.saturating_sub(TOLD as u64) {
-            0 => String::new(),
-            rest => format!("\n  and {rest} more"),
-        };
-        (count > 0).then(|| {
-            format!("{count} samples were not finite and were left out of their pixels' means:{named}{rest}")
-        })
+        lost(self.film.total_non_finite(), self.non_finite)
     }
 
     /// The same and more, times in seconds.

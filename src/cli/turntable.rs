@@ -4,7 +4,7 @@ use super::author_args::TurntableArgs;
 use super::failure::Failure;
 use super::frames::{Frames, Output, Turn};
 use super::progress::{Progress, words};
-use super::{diagnostics, interrupt, say, start};
+use super::{diagnostics, interrupt, say, start, stats};
 use crate::author::{self, Turntable};
 use crate::render::{Control, Renderer, Settings};
 use crate::scene;
@@ -13,6 +13,10 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
+
+/// What to do about samples that are not finite.
+const LOST_HINT: &str = "write the scene by `--scene FILE`: then `luxel render FILE --replay FRAME,X,Y,SAMPLE` shows how one \
+    came about";
 
 /// Renders a mesh that turns once.
 pub(crate) fn run(args: &TurntableArgs) -> Result<(), Failure> {
@@ -28,6 +32,7 @@ pub(crate) fn run(args: &TurntableArgs) -> Result<(), Failure> {
     interrupt::listen(&control);
     let mut renderer = renderer(args, &turn)?;
     let mut frames = Frames::new(output, &turn);
+    let (mut lost, mut named) = (0, Vec::new());
     {
         let _bar = Progress::start(&control, None);
         for frame in 0..turn.frames {
@@ -36,7 +41,12 @@ pub(crate) fn run(args: &TurntableArgs) -> Result<(), Failure> {
                 break;
             }
             frames.add(frame, &rendering)?;
+            lost += rendering.film.total_non_finite();
+            named.extend(rendering.non_finite);
         }
+    }
+    if let Some(lost) = stats::lost(lost, &named) {
+        say(&format!("warning: {lost}\n  = help: {LOST_HINT}"));
     }
     let finished = frames.finish()?;
     if control.stopped() && finished.count < turn.frames {

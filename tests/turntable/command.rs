@@ -311,3 +311,20 @@ fn convert_writes_a_scene_that_renders() {
         .expect("luxel runs");
     expect(&output, 2, &[".ron"]);
 }
+
+#[test]
+fn samples_that_are_not_finite_are_told_of() {
+    let folder = Folder::with_mesh("lost");
+    let wedge = String::from_utf8(folder.bytes("wedge.obj")).expect("text");
+    folder.file("a.mtl", "newmtl a\nKd 1 1 1\nKe 3e38 3e38 3e38\n");
+    folder.file("bright.obj", &format!("mtllib a.mtl\nusemtl a\n{wedge}"));
+    let words = [
+        "samples were not finite and were left out",
+        "frame 0, pixel (",
+        "--scene FILE",
+    ];
+    expect(&folder.turn(&["bright.obj"]), 0, &words);
+    let fine = folder.turn(&["wedge.obj"]);
+    let talk = String::from_utf8_lossy(&fine.stderr);
+    assert!(!talk.contains("not finite"), "{talk}");
+}
