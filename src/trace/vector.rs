@@ -224,11 +224,15 @@ pub(super) fn concentric_disk<L: BitLanes>(u: [L; 2]) -> [L; 2] {
     [radius * cos, radius * sin]
 }
 
+/// The least cos² θ of a direction about a normal: sample numbers keep 2⁻²⁴ away from 0 and 1, so that points of the disk
+/// keep 2⁻²³ away from its rim. Rounding alone may put them onto it, and a path along the surface would end.
+const RIM: f32 = 1.0 / (1u32 << 22) as f32;
+
 /// A direction about the unit normal n with density cos θ / π (Malley's method).
 #[inline(always)]
 pub(super) fn cosine_hemisphere<L: BitLanes>(n: V3<L>, u: [L; 2]) -> V3<L> {
     let [x, y] = concentric_disk(u);
-    let z = (L::splat(1.0) - x * x - y * y).max(L::splat(0.0)).sqrt();
+    let z = (L::splat(1.0) - x * x - y * y).max(L::splat(RIM)).sqrt();
     let (s, t) = basis(n);
     s * x + t * y + n * z
 }
@@ -308,6 +312,22 @@ mod tests {
                 (b.0.to_bits(), b.1.to_bits()),
                 "{turns}"
             );
+        }
+    }
+
+    /// All along the border of the square of sample numbers, directions still leave the surface.
+    #[test]
+    fn no_direction_lies_in_the_surface() {
+        let least = 1.0 / (1u32 << 24) as f32;
+        let normal = V3::from(unit(Vec3::new(0.3, -0.8, 0.1)));
+        for i in 0..1u32 << 18 {
+            let along = (i as f32 + 0.5) / (1u32 << 18) as f32;
+            for end in [least, 1.0 - least] {
+                for u in [[along, end], [end, along]] {
+                    let cos = cosine_hemisphere(normal, u).dot(normal);
+                    assert!(cos > 4e-4, "{u:?}: {cos}");
+                }
+            }
         }
     }
 
