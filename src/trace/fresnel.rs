@@ -4,6 +4,9 @@ use super::Fresnel;
 use super::vector::V3;
 use crate::math::lanes::Lanes;
 
+/// Indices of less are beyond those of glasses and crystals, seen from inside.
+const FAR_BELOW: f32 = 0.25;
+
 /// Reflectance and refracted cosine of unpolarised light at a smooth dielectric.
 ///
 /// `cos_i` ≥ 0 is the cosine of incidence, `eta` the index of the far side over that of the near side. The cosine of
@@ -18,8 +21,13 @@ pub fn dielectric(mode: Fresnel, cos_i: f32, eta: f32) -> (f32, f32) {
 #[inline(always)]
 pub(super) fn dielectrics<L: Lanes>(mode: Fresnel, cos_i: L, eta: L) -> (L, L) {
     let [zero, one] = [L::splat(0.0), L::splat(1.0)];
-    // η² cos²θt = η² − 1 + cos²θi: written so, nothing cancels at grazing angles or at indices near 1.
-    let scaled = (eta - one) * (eta + one) + cos_i * cos_i;
+    // η² cos²θt = η² − 1 + cos²θi: written so, nothing cancels at grazing angles or at indices near 1; and far below 1,
+    // nothing near the axis, where alone light passes.
+    let scaled = L::select(
+        eta.lt(L::splat(FAR_BELOW)),
+        eta * eta - (one - cos_i) * (one + cos_i),
+        (eta - one) * (eta + one) + cos_i * cos_i,
+    );
     let total = scaled.le(zero);
     let cos_t = scaled.sqrt() / eta;
     let r = match mode {
@@ -104,6 +112,30 @@ mod tests {
                     assert!(error < 1.2e-7 + rounding / cos2_t.sqrt(), "{cos_i} {eta}");
                 }
             }
+        }
+    }
+
+    /// Of what is left within the critical angle of extreme indices, each cosine of f32.
+    #[test]
+    fn extreme_indices_agree_with_f64() {
+        for eta in [0.01f32, 0.0125, 0.05, 0.1, 0.2] {
+            let n = f64::from(eta);
+            let critical = (1.0 - n * n).sqrt() as f32;
+            let (mut cos_i, mut tried) = (1.0f32, 0);
+            while cos_i > critical && tried < 100_000 {
+                let c = f64::from(cos_i);
+                let cos2_t = (n * n - (1.0 - c) * (1.0 + c)) / (n * n);
+                let (r, cos_t) = dielectric(Fresnel::Exact, cos_i, eta);
+                if cos2_t > 1e-3 {
+                    let error = (f64::from(r) - exact(c, n)).abs();
+                    assert!(error < 1e-5, "{cos_i} {eta}: {error}");
+                    let error = (f64::from(cos_t) - cos2_t.sqrt()).abs();
+                    assert!(error < 4e-6, "{cos_i} {eta}: {error}");
+                }
+                cos_i = cos_i.next_down();
+                tried += 1;
+            }
+            assert!(tried > 500, "{eta}: {tried}");
         }
     }
 
