@@ -19,7 +19,7 @@ pub enum Aov {
     Entity,
     /// Number of samples in the pixel.
     Samples,
-    /// Standard error of the pixel's mean radiance, from independent samples' formula; +inf below two samples.
+    /// Standard error of the pixel's mean radiance; +inf below two samples.
     Stderr,
 }
 

@@ -8,6 +8,9 @@
 //! before the 8-bit picture.
 
 pub mod aov;
+mod blocks;
+mod decay;
+mod error;
 mod exr;
 mod gif;
 mod metadata;
@@ -19,6 +22,8 @@ pub mod srgb;
 mod write;
 
 pub use self::aov::Aov;
+pub use self::blocks::Blocks;
+pub use self::error::ErrorBar;
 pub use self::exr::encode_exr;
 pub use self::gif::{GifFrame, TICKS_PER_SECOND, encode_gif};
 pub use self::metadata::Metadata;

@@ -8,6 +8,9 @@ pub struct Planes {
     pub rgb: Vec<[f64; 3]>,
     /// Sum of squared radiance, for the standard error.
     pub rgb_squared: Vec<[f64; 3]>,
+    /// For each level k, how much neighbouring blocks of 2ᵏ samples differ, as [`super::Blocks::means`] gives it; no level
+    /// where samples are independent.
+    pub gains: Vec<Vec<[f32; 3]>>,
     /// Samples in those sums.
     pub count: Vec<u32>,
     /// Samples left out of them because their radiance was not finite.
@@ -121,6 +124,12 @@ impl Film {
         };
         place.copy(&mut into.rgb, &tile.rgb, [0.0; 3]);
         place.copy(&mut into.rgb_squared, &tile.rgb_squared, [0.0; 3]);
+        if into.gains.len() < tile.gains.len() {
+            into.gains.resize(tile.gains.len(), Vec::new());
+        }
+        for (into, from) in into.gains.iter_mut().zip(&tile.gains) {
+            place.copy(into, from, [0.0; 3]);
+        }
         place.copy(&mut into.count, &tile.count, 0);
         place.copy(&mut into.non_finite, &tile.non_finite, 0);
         place.copy(&mut into.hit_count, &tile.hit_count, 0);

@@ -31,10 +31,15 @@ impl Film {
             .collect()
     }
 
-    /// Standard error of the mean radiance, `sqrt((Σx² − (Σx)²/n) / (n (n − 1)))`; +inf below two samples. It takes
-    /// samples for independent, so it overstates the error of low-discrepancy ones.
+    /// Standard error of the mean radiance; +inf below two samples.
+    ///
+    /// Of independent samples it is `sqrt((Σx² − (Σx)²/n) / (n (n − 1)))`. Samples that are spread evenly depend on each other
+    /// and are nearer to the truth than that says: there it is told from blocks of them, a pixel's own and its neighbours'.
     #[must_use]
     pub fn standard_error(&self) -> Vec<[f32; 3]> {
+        if let Some(errors) = self.block_errors() {
+            return errors;
+        }
         let planes = self.planes();
         let pixel = |i: usize| {
             let n = f64::from(planes.count[i]);
