@@ -3,6 +3,7 @@
 //! [`Image`] reads a PNG or an EXR into linear light; [`Pair`] is an image and its reference, fit to be compared, with
 //! the pixels that count; [`errors`] gives the statistics, [`flip`] what an eye would notice, [`heat`] a picture of
 //! either. A value that is not finite is an error at the door ([`Pair::new`]), so none of the numbers can hide it.
+//! [`fall`] follows an image's error while it is rendered.
 //!
 //! [`referee`] asks the same of what rays hit, [`exactness`] what being right costs, and [`stability`] what becomes of a
 //! scene at other sizes and places.
@@ -14,6 +15,7 @@ pub mod arms;
 pub mod bench;
 mod errors;
 pub mod exactness;
+pub mod fall;
 pub mod flip;
 pub mod heat;
 mod image;
