@@ -101,6 +101,8 @@ fn help_shows_what_exists_and_how() {
         "--output",
         "--spp",
         "--time",
+        "--noise",
+        "--vs",
         "--size",
         "--frame",
         "--bounces",
@@ -125,7 +127,7 @@ fn help_shows_what_exists_and_how() {
     for flag in flags {
         assert!(render.contains(flag), "no {flag} in:\n{render}");
     }
-    for later in ["animate", "--noise"] {
+    for later in ["animate"] {
         assert!(!top.contains(later) && !render.contains(later), "{later}");
     }
     expect(&folder.run(&[]), 2, &["Usage:"]);
@@ -144,6 +146,7 @@ fn wrong_arguments_are_explained_and_cost_nothing() {
         (&["--size", "0x5"], &["--size", "640x360"]),
         (&["--size", "32768x32768"], &["pixels"]),
         (&["--time", "5"], &["--time", "30s"]),
+        (&["--noise", "0"], &["--noise", "1%"]),
         (&["--exposure", "NaN"], &["--exposure", "stops"]),
         (&["--isa", "neon"], &["neon", "scalar"]),
         (&["--nee", "maybe"], &["on, off"]),
@@ -241,7 +244,14 @@ fn a_render_leaves_its_file_its_path_and_a_summary() {
     expect(
         &output,
         0,
-        &["scene.png · 40×24 · 3 spp", "Mrays/s", "extract", "tree"],
+        &[
+            "scene.png · 40×24 · 3 spp",
+            "relative RMSE",
+            "Mrays/s",
+            "extract",
+            "tree",
+            "what would help most",
+        ],
     );
     assert_eq!(text(&output.stdout), "scene.png\n");
     assert_eq!(folder.names(), ["s.json", "scene.png", "scene.ron"]);
@@ -249,6 +259,12 @@ fn a_render_leaves_its_file_its_path_and_a_summary() {
     assert_eq!(stats["spp"], 3);
     assert_eq!(stats["samples"], 40 * 24 * 3);
     assert_eq!(stats["stopped"], false);
+    assert_eq!(stats["ended_by"], "samples");
+    assert!(stats["error"]["relative_rmse"].as_f64() > Some(0.0));
+    let shares = stats["shares"].as_object().expect("stages");
+    let all: f64 = shares.values().filter_map(serde_json::Value::as_f64).sum();
+    assert!((all - 1.0).abs() < 1e-9, "{shares:?}");
+    assert!(stats["per_ray"]["rays_per_sample"].as_f64() >= Some(1.0));
     assert_eq!(stats["bytes"]["files"], 0);
     assert!(stats["bytes"]["buffers"].as_u64() > Some(0));
 }

@@ -2,6 +2,7 @@
 
 use super::author_args::{ConvertArgs, TurntableArgs};
 use super::bench_args::BenchArgs;
+use super::goal_args::GoalArgs;
 use super::replay_args::ReplayArgs;
 use super::stability_args::StabilityArgs;
 use crate::build::{Accel, Quality};
@@ -66,11 +67,12 @@ pub(crate) enum Command {
 Examples:
   luxel render room.ron                            room.png, as the scene says
   luxel render room.ron -o room.exr --aov albedo,normal,depth
-  luxel render room.ron --spp 1024 --time 30s      whichever comes first
+  luxel render room.ron --noise 1% --time 10m      until it is 1 % wrong, ten minutes at most
   luxel render room.ron --size 128x128 --spp 4     a quick look
   luxel render room.ron -o - | viewer              PNG on stdout
   luxel render room.ron --replay 0,12,7,3          what sample 3 of pixel (12, 7) of frame 0 met
 
+--spp, --noise and --time: the first that is reached ends the render.
 Ctrl-C writes what there is to NAME.partial.png (or .exr) and exits with 130.
 With equal samples the picture is the same to the bit for any --threads, --tile, --isa, --accel and --tree.")]
 pub(crate) struct RenderArgs {
@@ -79,10 +81,10 @@ pub(crate) struct RenderArgs {
     /// Where to write: .png or .exr by its suffix, - is PNG on stdout [default: SCENE.png in this folder]
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Samples per pixel [default: the scene's]
+    /// Samples per pixel [default: the scene's, or as many as --noise and --time take]
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..=i64::from(RenderDesc::MAX_SPP)))]
     pub(crate) spp: Option<u32>,
-    /// Stop after this time, if that comes before --spp: 30s, 2m, 500ms
+    /// Stop after this time, reading and writing included: 30s, 2m, 500ms
     #[arg(long, value_name = "TIME", value_parser = parse_time)]
     pub(crate) time: Option<Duration>,
     /// Width and height in pixels [default: the scene's]
@@ -142,6 +144,8 @@ pub(crate) struct RenderArgs {
     /// Write what the render cost as JSON
     #[arg(long, value_name = "FILE.json")]
     pub(crate) stats: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) goal: GoalArgs,
     #[command(flatten)]
     pub(crate) replay: ReplayArgs,
 }

@@ -68,7 +68,7 @@ fn check_arguments(args: &CompareArgs) -> Result<(), Failure> {
     check_writable(path)
 }
 
-fn read(path: &Path) -> Result<Image, Failure> {
+pub(super) fn read(path: &Path) -> Result<Image, Failure> {
     Image::read(path).map_err(|e| match &e {
         ReadError::File { cause, .. } => Failure::no_input(path, cause),
         ReadError::Content { .. } => Failure::bad_file(e),
@@ -86,7 +86,7 @@ fn ppd(args: &CompareArgs) -> f64 {
     args.ppd.unwrap_or(flip::PIXELS_PER_DEGREE)
 }
 
-fn refused(error: &PairError) -> Failure {
+pub(super) fn refused(error: &PairError) -> Failure {
     match error {
         PairError::Sizes(..) => Failure::usage(error, "only images of one size can be compared"),
         PairError::NonFinite(..) => Failure::different(error),

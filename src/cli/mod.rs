@@ -3,6 +3,7 @@
 //! Results go to stdout (the path written, JSON), talk goes to stderr. Deliberately absent: anything that decides what
 //! a picture looks like.
 
+mod advice;
 mod args;
 mod author_args;
 mod bench;
@@ -15,6 +16,7 @@ pub mod diagnostics;
 mod explain;
 mod failure;
 mod frames;
+mod goal_args;
 mod interrupt;
 mod load;
 mod names;
@@ -29,6 +31,7 @@ mod stability_args;
 mod start;
 mod stats;
 mod turntable;
+mod versus;
 
 use args::{Cli, Command};
 use clap::Parser;

@@ -5,11 +5,12 @@ use super::failure::Failure;
 use super::output::{Encoding, Format, Output, check_writable};
 use super::progress::Progress;
 use super::stats::Account;
-use super::{diagnostics, interrupt, load, print_result, replay, say};
+use super::versus::Versus;
+use super::{advice, diagnostics, interrupt, load, print_result, replay, say};
 use crate::film;
 use crate::math;
 use crate::render::{Control, Rendering, Settings};
-use crate::scene::SceneDesc;
+use crate::scene::{RenderDesc, SceneDesc};
 use crate::trace::TraceOptions;
 use crate::trace::isa::Isa;
 use std::ffi::OsStr;
@@ -40,14 +41,26 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
     if !args.nee.is_on() && loaded.has_punctual_lights() {
         say("warning: with --nee off, lights without extent (`light: ..`) do not shine");
     }
-    let settings = settings(args, &loaded.desc);
-    let time = settings.time;
+    let mut settings = settings(args, &loaded.desc);
+    let time = settings
+        .time
+        .map(|time| time.saturating_sub(start.elapsed()));
+    settings.time = time;
+    let mut versus = match &args.goal.vs {
+        Some(reference) => Some(Versus::start(reference, &output, settings.size)?),
+        None => None,
+    };
     let files = loaded.memory();
     let mut renderer = loaded.renderer(settings)?;
     let load = start.elapsed();
     let rendering = {
         let _bar = Progress::start(&control, time);
-        renderer.render(args.frame, &control)
+        match &mut versus {
+            None => renderer.render(args.frame, &control),
+            Some(versus) => renderer.render_watched(args.frame, &control, |film, spp, time| {
+                versus.look(film, spp, time);
+            }),
+        }
     };
     let mut encoding = Encoding {
         gain: math::pow(2.0, args.exposure),
@@ -62,9 +75,11 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
     }
     let writing = Instant::now();
     output.write(&rendering.film, &encoding)?;
-    let account = Account {
+    let mut account = Account {
         output: output.to_string(),
         film: &rendering.film,
+        error: rendering.film.error(),
+        goal: args.goal.noise,
         non_finite: &rendering.non_finite,
         stats: rendering.stats,
         load,
@@ -72,8 +87,14 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
         write: writing.elapsed(),
         isa: isa(args).level().to_string(),
         tree: args.tree.name(),
+        advice: String::new(),
     };
-    tell(args, &output, &account)
+    account.advice = advice::of(&account, args.tree.into());
+    tell(args, &output, &account)?;
+    match versus {
+        None => Ok(()),
+        Some(versus) => print_result(versus.finish(&args.scene.display().to_string())?.as_bytes()),
+    }
 }
 
 /// The path on stdout, what it cost on stderr and in the file of `--stats`.
@@ -86,6 +107,10 @@ fn tell(args: &RenderArgs, output: &Output, account: &Account<'_>) -> Result<(),
         print_result(format!("{output}\n").as_bytes())?;
     }
     say(&account.line());
+    say(&format!("what would help most: {}", account.advice));
+    if let Some(doubt) = account.doubt() {
+        say(&format!("warning: {doubt}"));
+    }
     match account.lost() {
         None => Ok(()),
         Some(lost) if args.strict => Err(Failure::lost_samples(lost, LOST_HINT)),
@@ -125,7 +150,11 @@ fn settings(args: &RenderArgs, desc: &SceneDesc) -> Settings {
     let defaults = Settings::of_scene(desc);
     Settings {
         size: args.size.unwrap_or(defaults.size),
-        spp: args.spp.unwrap_or(defaults.spp),
+        spp: args.spp.unwrap_or(match (args.goal.noise, args.time) {
+            (None, None) => defaults.spp,
+            _ => RenderDesc::MAX_SPP,
+        }),
+        noise: args.goal.noise,
         time: args.time,
         threads: args.threads.map(usize::from),
         tile: args.tile,

@@ -15,7 +15,7 @@ pub(crate) struct SampleName {
 #[derive(Debug, Args)]
 pub(crate) struct ReplayArgs {
     /// Print the path of one sample, vertex by vertex, in place of rendering; other options as for the image it belongs to
-    #[arg(long, value_name = "FRAME,X,Y,SAMPLE", value_parser = parse, conflicts_with_all = ["output", "stats", "time", "aov"])]
+    #[arg(long, value_name = "FRAME,X,Y,SAMPLE", value_parser = parse, conflicts_with_all = ["output", "stats", "time", "noise", "vs", "aov"])]
     pub(crate) replay: Option<SampleName>,
 }
 

@@ -2,8 +2,8 @@
 
 use super::patience::megabytes;
 use super::progress::words;
-use crate::film::Film;
-use crate::render::{NonFinite, Stats};
+use crate::film::{ErrorBar, Film};
+use crate::render::{Ended, NonFinite, Stats};
 use serde_json::json;
 use std::time::Duration;
 
@@ -16,6 +16,10 @@ pub(crate) struct Account<'a> {
     pub(crate) output: String,
     /// The sums.
     pub(crate) film: &'a Film,
+    /// How wrong the image is; `None` below two samples.
+    pub(crate) error: Option<ErrorBar>,
+    /// How wrong it was to be.
+    pub(crate) goal: Option<f64>,
     /// The first of the samples that were not finite.
     pub(crate) non_finite: &'a [NonFinite],
     /// What rendering cost.
@@ -30,6 +34,8 @@ pub(crate) struct Account<'a> {
     pub(crate) isa: String,
     /// How well the tree was built.
     pub(crate) tree: &'static str,
+    /// The one change that would help most.
+    pub(crate) advice: String,
 }
 
 /// Says how many samples were not finite, and which some of them are; `None` for none.
@@ -54,17 +60,18 @@ pub(crate) fn lost(count: u64, some: &[NonFinite]) -> Option<String> {
 }
 
 impl Account<'_> {
-    /// One line: `room.png · 512×512 · 64 spp · 3.1 s · 12.3 Mrays/s · extract 100 µs, flatten 2 ms, tree 8 ms · 12 MB`,
-    /// the last being what the files and the buffers take.
+    /// One line: `room.png · 512×512 · 64 spp · 3.1 s · relative RMSE 1.8 % ± 0.2 · 12.3 Mrays/s · extract 100 µs, flatten
+    /// 2 ms, tree 8 ms · 12 MB`, the last being what the files and the buffers take.
     pub(crate) fn line(&self) -> String {
         let stages = &self.stats.stages;
         format!(
-            "{} · {}×{} · {} spp · {} · {:.1} Mrays/s · extract {}, flatten {}, tree {} · {}",
+            "{} · {}×{} · {} · {} · {} · {:.1} Mrays/s · extract {}, flatten {}, tree {} · {}",
             self.output,
             self.film.width(),
             self.film.height(),
-            self.stats.spp,
-            words(stages.trace),
+            self.samples(),
+            words(stages.pilot + stages.trace),
+            self.error_bar(),
             self.stats.mrays_per_second(),
             words(stages.extract),
             words(stages.flatten),
@@ -73,9 +80,61 @@ impl Account<'_> {
         )
     }
 
+    /// `64 spp`, and what ended it where that was not their number.
+    fn samples(&self) -> String {
+        let spp = self.stats.spp;
+        match (self.stats.ended, self.goal) {
+            (Ended::Time, _) => format!("{spp} spp, ended by --time"),
+            (Ended::Noise, Some(goal)) => format!(
+                "{spp} spp, ended by --noise {} % (pilot: {} spp)",
+                percent(goal, goal),
+                self.stats.pilot
+            ),
+            (_, Some(_)) => format!("{spp} spp, ended by --spp"),
+            _ => format!("{spp} spp"),
+        }
+    }
+
+    /// `relative RMSE 1.8 % ± 0.2`.
+    fn error_bar(&self) -> String {
+        match &self.error {
+            None => "error unknown".to_owned(),
+            Some(bar) => format!(
+                "relative RMSE {} % ± {}",
+                percent(bar.relative, bar.half_width),
+                percent(bar.half_width, bar.half_width)
+            ),
+        }
+    }
+
+    /// Why the error bar is not to be trusted, if so.
+    pub(crate) fn doubt(&self) -> Option<String> {
+        let bar = self.error.as_ref().filter(|bar| bar.is_fragile())?;
+        Some(format!(
+            "the error is not to be trusted: {:.0} % of it is in pixels where a few samples carry most of the light",
+            100.0 * bar.fragile
+        ))
+    }
+
     /// How many samples were not finite, and which; `None` if all were.
     pub(crate) fn lost(&self) -> Option<String> {
         lost(self.film.total_non_finite(), self.non_finite)
+    }
+
+    /// Where the time went, as shares of all of it.
+    fn shares(&self) -> serde_json::Value {
+        let stages = &self.stats.stages;
+        let all = (self.load + stages.total() + self.write).as_secs_f64();
+        let share = |time: Duration| ratio(time.as_secs_f64(), all);
+        json!({
+            "load": share(self.load),
+            "extract": share(stages.extract),
+            "flatten": share(stages.flatten),
+            "bvh": share(stages.bvh),
+            "pilot": share(stages.pilot),
+            "trace": share(stages.trace),
+            "write": share(self.write),
+        })
     }
 
     /// The same and more, times in seconds.
@@ -86,6 +145,19 @@ impl Account<'_> {
             "output": self.output,
             "size": [self.film.width(), self.film.height()],
             "spp": stats.spp,
+            "ended_by": match stats.ended {
+                Ended::Samples => "samples",
+                Ended::Noise => "noise",
+                Ended::Time => "time",
+            },
+            "pilot_spp": stats.pilot,
+            "error": self.error.as_ref().map(|bar| json!({
+                "relative_rmse": bar.relative,
+                "half_width_95": bar.half_width,
+                "wanted": self.goal,
+                "share_of_few_samples": bar.fragile,
+                "trusted": !bar.is_fragile(),
+            })),
             "samples": self.film.total_samples(),
             "non_finite_samples": self.film.total_non_finite(),
             "non_finite": self.non_finite.iter().map(|n| json!({
@@ -106,10 +178,48 @@ impl Account<'_> {
                 "extract": stages.extract.as_secs_f64(),
                 "flatten": stages.flatten.as_secs_f64(),
                 "bvh": stages.bvh.as_secs_f64(),
+                "pilot": stages.pilot.as_secs_f64(),
                 "trace": stages.trace.as_secs_f64(),
                 "write": self.write.as_secs_f64(),
             },
+            "shares": self.shares(),
+            "per_ray": {
+                "nanoseconds_of_a_thread": ratio(
+                    stages.trace.as_secs_f64() * 1e9 * stats.threads as f64,
+                    (stats.closest_rays + stats.occlusion_rays) as f64,
+                ),
+                "rays_per_sample": ratio(
+                    (stats.closest_rays + stats.occlusion_rays) as f64,
+                    self.film.total_samples() as f64,
+                ),
+            },
+            "most_would_help": self.advice,
         });
         format!("{value:#}\n")
+    }
+}
+
+fn ratio(part: f64, whole: f64) -> f64 {
+    if whole > 0.0 { part / whole } else { 0.0 }
+}
+
+/// A share in percent, with the decimals that make two digits of `unit`.
+fn percent(share: f64, unit: f64) -> String {
+    let steps = std::iter::successors(Some(100.0 * unit), |step| Some(10.0 * step));
+    let decimals = steps.take(6).take_while(|step| *step < 9.5).count();
+    format!("{:.decimals$}", 100.0 * share)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_have_the_digits_that_they_are_known_to() {
+        assert_eq!(percent(0.018_34, 0.002_1), "1.83");
+        assert_eq!(percent(0.002_1, 0.002_1), "0.21");
+        assert_eq!(percent(0.4, 0.2), "40");
+        assert_eq!(percent(0.000_183, 0.000_02), "0.0183");
+        assert_eq!(percent(0.0, 0.0), "0.000000");
     }
 }

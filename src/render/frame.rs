@@ -2,19 +2,20 @@
 
 use super::lost::{self, NonFinite};
 use super::metadata::{metadata, scene_hash};
-use super::passes::Passes;
+use super::passes::{Deadline, Passes};
+use super::pilot::{self, Verdict};
 use super::tiles::{self, Tile};
-use super::{Control, Settings, Stages, Stats};
+use super::{Control, Ended, Settings, Stages, Stats};
 use crate::asset::AssetStore;
 use crate::build::{BuildOptions, BuildTimes, SceneBuilder};
-use crate::film::{Film, Metadata, Planes, Window};
+use crate::film::{Blocks, Film, Metadata, Planes, Window};
 use crate::flat::{FlatScene, PixelFilter};
 use crate::scene::{ColorDesc, FilterDesc, SceneDesc};
-use crate::trace::{Rect, TileSums, Tracer};
+use crate::trace::{Rect, TileSums, TraceOptions, Tracer};
 use crate::world::pose;
 use hecs::World;
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// A rendered frame.
 #[derive(Clone, Debug)]
@@ -94,11 +95,38 @@ impl Renderer {
         (scene, times)
     }
 
-    /// Renders a frame, or as much of it as [`Settings::time`] and `control` allow.
+    /// Renders a frame, or as much of it as [`Settings`] and `control` allow.
     pub fn render(&mut self, frame: u32, control: &Control) -> Rendering {
-        let deadline = self.settings.time.map(|time| Instant::now() + time);
+        self.render_by(frame, control, |_, _, _| ())
+    }
+
+    /// The same, while `watch` sees the film after each pass over the whole image, with the samples per pixel and the time
+    /// that tracing has taken so far.
+    pub fn render_watched(
+        &mut self,
+        frame: u32,
+        control: &Control,
+        mut watch: impl FnMut(&Film, u32, Duration) + Send,
+    ) -> Rendering {
+        let (width, height) = self.settings.size;
+        let mut watching = Duration::ZERO;
+        self.render_by(frame, control, |tiles, spp, spent| {
+            let now = Instant::now();
+            let film = assemble(width, height, tiles.iter().cloned());
+            watch(&film, spp, spent - watching);
+            watching += now.elapsed();
+        })
+    }
+
+    fn render_by(
+        &mut self,
+        frame: u32,
+        control: &Control,
+        watch: impl FnMut(&[Tile], u32, Duration) + Send,
+    ) -> Rendering {
+        let deadline = self.settings.time.map(Deadline::after);
         let (scene, times) = self.build(frame);
-        let (film, non_finite, mut stats) = self.trace(&scene, control, deadline);
+        let (film, non_finite, mut stats) = self.trace(&scene, control, deadline, watch);
         stats.bytes = times.bytes;
         stats.stages = Stages {
             extract: times.extract,
@@ -118,34 +146,80 @@ impl Renderer {
         &self,
         scene: &FlatScene,
         control: &Control,
-        deadline: Option<Instant>,
+        deadline: Option<Deadline>,
+        mut watch: impl FnMut(&[Tile], u32, Duration) + Send,
     ) -> (Film, Vec<NonFinite>, Stats) {
         let settings = &self.settings;
         let (width, height) = settings.size;
-        control.expect(u64::from(width) * u64::from(height) * u64::from(settings.spp));
-        let mut tiles = tiles::cut(width, height, settings.tile);
         let start = Instant::now();
-        let passes = Passes::new(settings.spp, deadline);
-        let spp = self.pool.install(|| {
-            tiles::run(&mut tiles, passes, control, || {
-                let mut tracer = Tracer::new(scene, &settings.trace);
-                move |rect, samples, sums: &mut _| tracer.trace_tile(rect, samples, sums)
-            })
-        });
+        let verdict = settings
+            .noise
+            .map(|wanted| self.ask_pilot(wanted, scene, control, deadline));
+        let piloted = start.elapsed();
+        let goal = verdict.map_or(settings.spp, |verdict| verdict.spp);
+        let pilot = verdict.map_or(0, |verdict| verdict.pilot);
+        let pixels = u64::from(width) * u64::from(height);
+        control.expect(pixels * (u64::from(pilot) + u64::from(goal)));
+        let mut tiles = tiles::cut(settings.size, settings.tile, settings.trace.sampler);
+        let passes = Passes::new(0, goal, deadline);
+        let watch = |tiles: &[Tile], spp| watch(tiles, spp, start.elapsed());
+        let spp = self.run(scene, &settings.trace, &mut tiles, (passes, control), watch);
         let mut stats = Stats {
             threads: self.pool.current_num_threads(),
-            // A deadline ends before all samples too, but between passes and on purpose.
-            stopped: control.stopped() && spp < settings.spp,
+            // A deadline ends before all samples too, but on purpose.
+            stopped: control.stopped() && spp < goal,
             spp,
+            pilot,
+            ended: match verdict {
+                _ if spp < goal => Ended::Time,
+                Some(_) if goal < settings.spp => Ended::Noise,
+                _ => Ended::Samples,
+            },
             ..Stats::default()
         };
-        stats.stages.trace = start.elapsed();
-        for (_, sums) in &tiles {
-            stats.closest_rays += sums.rays[0];
-            stats.occlusion_rays += sums.rays[1];
+        stats.stages.pilot = piloted;
+        stats.stages.trace = start.elapsed() - piloted;
+        for tile in &tiles {
+            stats.closest_rays += tile.sums.rays[0];
+            stats.occlusion_rays += tile.sums.rays[1];
         }
         let non_finite = lost::find(&tiles, scene, &settings.trace);
         (assemble(width, height, tiles), non_finite, stats)
+    }
+
+    /// How many samples the wanted error takes.
+    fn ask_pilot(
+        &self,
+        wanted: f64,
+        scene: &FlatScene,
+        control: &Control,
+        deadline: Option<Deadline>,
+    ) -> Verdict {
+        let settings = &self.settings;
+        let options = pilot::options(&settings.trace);
+        let tiles = tiles::cut(settings.size, settings.tile, options.sampler);
+        let most = settings.spp;
+        let run = |tiles: &mut [Tile], passes| {
+            self.run(scene, &options, tiles, (passes, control), |_, _| ())
+        };
+        pilot::ask(wanted, most, settings.size, tiles, control, deadline, run)
+    }
+
+    /// Traces passes on the threads; gives the samples that are complete.
+    fn run(
+        &self,
+        scene: &FlatScene,
+        options: &TraceOptions,
+        tiles: &mut [Tile],
+        (passes, control): (Passes, &Control),
+        watch: impl FnMut(&[Tile], u32) + Send,
+    ) -> u32 {
+        self.pool.install(|| {
+            tiles::run(tiles, passes, control, watch, || {
+                let mut tracer = Tracer::new(scene, options);
+                move |rect, samples, sums: &mut _| tracer.trace_tile(rect, samples, sums)
+            })
+        })
     }
 }
 
@@ -169,11 +243,11 @@ fn build_options(desc: &SceneDesc, settings: &Settings) -> BuildOptions {
 }
 
 /// Puts tiles together, one after the other, so that their memory is given back on the way.
-pub(super) fn assemble(width: u32, height: u32, tiles: Vec<Tile>) -> Film {
+pub(super) fn assemble(width: u32, height: u32, tiles: impl IntoIterator<Item = Tile>) -> Film {
     let mut film = Film::new(width, height);
-    for (rect, sums) in tiles {
-        if !sums.count.is_empty() {
-            film.put(window(rect), &planes(sums));
+    for tile in tiles {
+        if !tile.sums.count.is_empty() {
+            film.put(window(tile.rect), &planes(tile.sums, tile.blocks));
         }
     }
     film
@@ -189,10 +263,11 @@ fn window(rect: Rect) -> Window {
 }
 
 /// Moves the arrays: tracing may not know the film, nor the film tracing.
-fn planes(sums: TileSums) -> Planes {
+fn planes(sums: TileSums, blocks: Option<Blocks>) -> Planes {
     Planes {
         rgb: sums.rgb,
         rgb_squared: sums.rgb_squared,
+        gains: blocks.map(Blocks::means).unwrap_or_default(),
         count: sums.count,
         non_finite: sums.non_finite,
         hit_count: sums.hit_count,

@@ -25,7 +25,7 @@ pub struct NonFinite {
 pub(super) fn find(tiles: &[Tile], scene: &FlatScene, options: &TraceOptions) -> Vec<NonFinite> {
     let mut all: Vec<(u32, u32, u32)> = tiles
         .iter()
-        .flat_map(|(rect, sums)| {
+        .flat_map(|Tile { rect, sums, .. }| {
             sums.lost.iter().map(move |lost| {
                 let [x, y] = [lost.pixel % rect.width, lost.pixel / rect.width];
                 (rect.y + y, rect.x + x, lost.sample)

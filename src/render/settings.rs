@@ -10,9 +10,12 @@ use std::time::Duration;
 pub struct Settings {
     /// Width and height in pixels, each at least 1.
     pub size: (u32, u32),
-    /// Samples per pixel, at least 1.
+    /// Samples per pixel, at least 1; at most so many, where `noise` or `time` ends the render.
     pub spp: u32,
-    /// Stop before this is over, if that comes first; at least one sample per pixel is traced.
+    /// Stop where the relative error (see [`crate::film::ErrorBar`]) is this, if that comes first. A pilot from another seed
+    /// says how many samples that takes.
+    pub noise: Option<f64>,
+    /// Stop when this is over, if that comes first; at least one sample per pixel is traced.
     pub time: Option<Duration>,
     /// Worker threads; as many as the machine offers if not said.
     pub threads: Option<usize>,
@@ -36,6 +39,7 @@ impl Settings {
         Settings {
             size: desc.render.size,
             spp: desc.render.spp,
+            noise: None,
             time: None,
             threads: None,
             tile: Settings::DEFAULT_TILE,

@@ -11,8 +11,30 @@ pub struct Stages {
     pub flatten: Duration,
     /// Bounding volume hierarchies.
     pub bvh: Duration,
+    /// The pilot of [`super::Settings::noise`].
+    pub pilot: Duration,
     /// Tracing.
     pub trace: Duration,
+}
+
+impl Stages {
+    /// All of them together.
+    #[must_use]
+    pub fn total(&self) -> Duration {
+        self.extract + self.flatten + self.bvh + self.pilot + self.trace
+    }
+}
+
+/// What ends a render: the first that is reached.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Ended {
+    /// All samples that were asked for.
+    #[default]
+    Samples,
+    /// As many as the wanted error takes.
+    Noise,
+    /// The time.
+    Time,
 }
 
 /// What a render cost, and what it did.
@@ -30,6 +52,10 @@ pub struct Stats {
     pub threads: usize,
     /// Samples that every pixel has.
     pub spp: u32,
+    /// Samples per pixel that were traced to find how many the wanted error takes, and that are not in the image.
+    pub pilot: u32,
+    /// What ended the render.
+    pub ended: Ended,
     /// Whether it was stopped before all samples or the time were used up.
     pub stopped: bool,
 }

@@ -105,6 +105,7 @@ impl Stage {
         let settings = Settings {
             size: desc.render.size,
             spp: desc.render.spp,
+            noise: None,
             time: None,
             threads: Some(1),
             tile: Settings::DEFAULT_TILE,

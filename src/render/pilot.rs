@@ -1,0 +1,77 @@
+//! How many samples a wanted error takes: told by a pilot, a rendering of the same frame from another seed.
+//!
+//! A render that stops when its own samples look good stops too early where a rare bright one has not come yet, and is too
+//! dark on average. The pilot's samples are not in the image, which knows nothing of its own when their number is set: it is
+//! a mean of n samples as any other. And n depends on scene, frame and seed alone.
+
+use super::passes::{Deadline, Passes};
+use super::tiles::Tile;
+use super::{Control, frame};
+use crate::trace::TraceOptions;
+
+/// Samples of the shortest pilot.
+const SHORTEST: u32 = 16;
+
+/// The pilot has at least this part of the samples that it asks for: a rate of convergence can be trusted for so many
+/// doublings, no more.
+const PART: u32 = 8;
+
+/// Fewest samples of an image for which the error is asked: fewer say nothing about it.
+const FEWEST: u32 = 4;
+
+/// Share of the time that the pilot may take.
+const TIME: f64 = 0.125;
+
+/// What the pilot found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Verdict {
+    /// Samples per pixel that reach the error, or the most there may be.
+    pub(super) spp: u32,
+    /// Samples per pixel of the pilot.
+    pub(super) pilot: u32,
+}
+
+/// The pilot's own numbers: another seed, and nothing beside the radiance.
+pub(super) fn options(options: &TraceOptions) -> TraceOptions {
+    TraceOptions {
+        // The bits of "pilot": no one counts seeds up to there.
+        seed: options.seed ^ 0x7069_6c6f_7400_0000,
+        features: false,
+        ids: false,
+        ..*options
+    }
+}
+
+/// How many samples, at most `most`, give a relative error of `wanted`. `trace` completes the passes that it is given and
+/// says how many samples there are.
+pub(super) fn ask(
+    wanted: f64,
+    most: u32,
+    size: (u32, u32),
+    mut tiles: Vec<Tile>,
+    control: &Control,
+    deadline: Option<Deadline>,
+    trace: impl Fn(&mut [Tile], Passes) -> u32,
+) -> Verdict {
+    let pixels = u64::from(size.0) * u64::from(size.1);
+    let deadline = deadline.map(|deadline| deadline.part(TIME));
+    let mut pilot = 0;
+    loop {
+        let goal = (2 * pilot).max(SHORTEST);
+        control.expect(pixels * u64::from(goal + most.min(goal.saturating_mul(PART))));
+        let complete = trace(&mut tiles, Passes::new(pilot, goal, deadline));
+        let film = frame::assemble(size.0, size.1, tiles.iter().cloned());
+        let spp = film
+            .error()
+            .map_or(most, |bar| bar.samples_for(wanted, FEWEST, most));
+        let verdict = Verdict {
+            spp,
+            pilot: complete,
+        };
+        // Cut off by the time, or by Ctrl-C; or long enough.
+        if complete < goal || goal >= spp.div_ceil(PART) {
+            return verdict;
+        }
+        pilot = goal;
+    }
+}
