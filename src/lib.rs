@@ -98,6 +98,9 @@
 //!   a kilometre; and it calls a picture wrong by its own noise, since a path that passes an edge by less than the last bit
 //!   may change sides. It places the root of a world by itself, for which [`measure`] names hecs.
 //! * Tracing records no bounces of samples that are not finite: the few that are listed are replayed.
+//! * Error bars come from blocks of the one sequence of samples that a pixel has, not from replicates of it, which would cost
+//!   convergence and other bits.
+//! * `--noise` and `--time` without `--spp` do not stop at the scene's samples.
 //! * `world::AuthoringIndex` is a pair, entity and node, since one entity of a scene may stand for a file's many.
 
 pub mod asset;
