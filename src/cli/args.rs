@@ -1,16 +1,14 @@
 //! The arguments. Every number is checked here, with its range in the message.
 
+use super::animate_args::AnimateArgs;
 use super::author_args::{ConvertArgs, TurntableArgs};
 use super::bench_args::BenchArgs;
+use super::dial_args::DialArgs;
 use super::goal_args::GoalArgs;
 use super::replay_args::ReplayArgs;
 use super::stability_args::StabilityArgs;
-use crate::build::{Accel, Quality};
-use crate::film::Aov;
 use crate::scene::RenderDesc;
 use crate::trace::isa::{Isa, Level};
-use crate::trace::{Fresnel, Sampler};
-use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -25,6 +23,7 @@ use std::time::Duration;
 Examples:
   luxel render scenes/hero.ron                     writes hero.png here
   luxel render room.ron -o room.exr --aov normal,depth
+  luxel animate spin.ron --gif spin.gif            frame by frame, and a film of them
   luxel check room.ron                             every error at once, of the scene and of its files
   luxel turntable cat.obj                          a mesh from all sides: cat.gif
   luxel explain room.ron                           what the scene makes luxel do
@@ -32,7 +31,7 @@ Examples:
   luxel bench                                      how fast rays are traced, and why
   luxel stability room.ron                         what goes wrong with the scene at other sizes and places
 
-Exit codes: 0 done, 1 images differ by more than --max (bench: the arms' hits do; stability: the scene goes wrong), 2 usage, 65 bad scene or image, 66 missing file, 70 bug, 74 i/o, 130 stopped"
+Exit codes: 0 done, 1 images differ by more than --max (bench: the arms' hits do; stability: the scene goes wrong), 2 usage, 65 bad scene or image, 66 missing file, 70 bug, 74 i/o, 75 stopped, and the same line goes on, 130 stopped"
 )]
 pub(crate) struct Cli {
     /// What to do.
@@ -45,6 +44,8 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// Render one frame of a scene to a PNG or an EXR file
     Render(Box<RenderArgs>),
+    /// Render frames of a scene whose parts move; the same line goes on where it was stopped
+    Animate(Box<AnimateArgs>),
     /// List every error and warning of a scene and of the files that it names, or of a mesh file
     Check(CheckArgs),
     /// Show a mesh from all sides: no scene file, a GIF within seconds
@@ -87,60 +88,11 @@ pub(crate) struct RenderArgs {
     /// Stop after this time, reading and writing included: 30s, 2m, 500ms
     #[arg(long, value_name = "TIME", value_parser = parse_time)]
     pub(crate) time: Option<Duration>,
-    /// Width and height in pixels [default: the scene's]
-    #[arg(long, value_name = "WxH", value_parser = parse_size)]
-    pub(crate) size: Option<(u32, u32)>,
     /// Frame number; frame K shows the scene at K / fps seconds
     #[arg(long, value_name = "K", default_value_t = 0)]
     pub(crate) frame: u32,
-    /// Scattering events on a path; 1 is direct light only [default: the scene's]
-    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(0..=i64::from(RenderDesc::MAX_BOUNCES)))]
-    pub(crate) bounces: Option<u32>,
-    /// Exposure of a PNG in stops: +1 is twice as bright. An EXR stays linear
-    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true, value_parser = parse_exposure)]
-    pub(crate) exposure: f64,
-    /// Another seed is another picture of the same scene, with other noise
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    pub(crate) seed: u64,
-    /// Where random numbers come from
-    #[arg(long, value_enum, default_value_t = SamplerArg::Sobol)]
-    pub(crate) sampler: SamplerArg,
-    /// Worker threads [default: all that the machine offers]
-    #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..=1024))]
-    pub(crate) threads: Option<u16>,
-    /// Instruction set: scalar, sse2, avx2, avx512 [default: the best that this machine has]
-    #[arg(long, value_name = "ISA", value_parser = parse_isa)]
-    pub(crate) isa: Option<Isa>,
-    /// How rays find what they hit: test everything, a box per mesh, or the tree
-    #[arg(long, value_enum, default_value_t = AccelArg::Bvh)]
-    pub(crate) accel: AccelArg,
-    /// How well the tree is built: good, or fast, in a third of the time, for many triangles and few samples
-    #[arg(long, value_enum, default_value_t = TreeArg::Good)]
-    pub(crate) tree: TreeArg,
-    /// Side of a tile in pixels
-    #[arg(long, value_name = "N", default_value_t = crate::render::Settings::DEFAULT_TILE, value_parser = value_parser!(u32).range(1..=4096))]
-    pub(crate) tile: u32,
-    /// More images in the EXR file, separated by commas
-    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = aov_parser())]
-    pub(crate) aov: Vec<Aov>,
-    /// Sample lights directly (next-event estimation); off, `light: Point, Spot, Sun` are not found and do not shine
-    #[arg(long, value_enum, default_value_t = Switch::On)]
-    pub(crate) nee: Switch,
-    /// Weigh light and material samples against each other (multiple importance sampling)
-    #[arg(long, value_enum, default_value_t = Switch::On)]
-    pub(crate) mis: Switch,
-    /// End dim paths at random, without bias
-    #[arg(long, value_enum, default_value_t = Switch::On)]
-    pub(crate) roulette: Switch,
-    /// Reflectance of glass and plastic
-    #[arg(long, value_enum, default_value_t = FresnelArg::Exact)]
-    pub(crate) fresnel: FresnelArg,
-    /// Fail (65) where `luxel check` has warnings, before rendering, or where a sample is not finite, after it
-    #[arg(long)]
-    pub(crate) strict: bool,
-    /// Most memory that the files of the scene may take: 512M, 8G
-    #[arg(long, value_name = "SIZE", default_value = "4G", value_parser = parse_memory)]
-    pub(crate) max_memory: u64,
+    #[command(flatten)]
+    pub(crate) dials: DialArgs,
     /// Write what the render cost as JSON
     #[arg(long, value_name = "FILE.json")]
     pub(crate) stats: Option<PathBuf>,
@@ -253,115 +205,6 @@ pub(crate) enum MaskArg {
     Peers,
 }
 
-/// `on` or `off`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Switch {
-    On,
-    Off,
-}
-
-impl Switch {
-    /// Whether it is on.
-    pub(crate) fn is_on(self) -> bool {
-        self == Switch::On
-    }
-}
-
-/// `--sampler`.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum SamplerArg {
-    /// A hash per sample and dimension
-    Independent,
-    /// Owen-scrambled Sobol points
-    Sobol,
-}
-
-impl From<SamplerArg> for Sampler {
-    fn from(arg: SamplerArg) -> Sampler {
-        match arg {
-            SamplerArg::Independent => Sampler::Independent,
-            SamplerArg::Sobol => Sampler::Sobol,
-        }
-    }
-}
-
-/// `--fresnel`.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum FresnelArg {
-    /// Fresnel's equations
-    Exact,
-    /// Schlick's approximation
-    Schlick,
-    /// Nothing is reflected, except totally
-    Off,
-}
-
-impl From<FresnelArg> for Fresnel {
-    fn from(arg: FresnelArg) -> Fresnel {
-        match arg {
-            FresnelArg::Exact => Fresnel::Exact,
-            FresnelArg::Schlick => Fresnel::Schlick,
-            FresnelArg::Off => Fresnel::Off,
-        }
-    }
-}
-
-/// `--accel`.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum AccelArg {
-    /// Every ray against every primitive
-    Brute,
-    /// A bounding box around each mesh
-    Box,
-    /// The bounding volume hierarchy
-    Bvh,
-}
-
-impl From<AccelArg> for Accel {
-    fn from(arg: AccelArg) -> Accel {
-        match arg {
-            AccelArg::Brute => Accel::Brute,
-            AccelArg::Box => Accel::Box,
-            AccelArg::Bvh => Accel::Bvh,
-        }
-    }
-}
-
-/// `--tree`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum TreeArg {
-    /// By the surface area heuristic throughout
-    Good,
-    /// Along the Morton curve at the bottom
-    Fast,
-}
-
-impl TreeArg {
-    /// As it is written.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            TreeArg::Good => "good",
-            TreeArg::Fast => "fast",
-        }
-    }
-}
-
-impl From<TreeArg> for Quality {
-    fn from(arg: TreeArg) -> Quality {
-        match arg {
-            TreeArg::Good => Quality::Good,
-            TreeArg::Fast => Quality::Fast,
-        }
-    }
-}
-
-fn aov_parser() -> impl TypedValueParser<Value = Aov> {
-    PossibleValuesParser::new(Aov::ALL.map(Aov::name)).map(|name| {
-        let known = Aov::ALL.into_iter().find(|aov| aov.name() == name);
-        known.unwrap_or(Aov::Samples)
-    })
-}
-
 /// `WxH`.
 pub(super) fn parse_size(text: &str) -> Result<(u32, u32), String> {
     let side = |s: &str| {
@@ -418,13 +261,6 @@ pub(crate) fn parse_memory(text: &str) -> Result<u64, String> {
     bytes
         .filter(|&bytes| bytes > 0)
         .ok_or_else(|| "write a whole number above 0 with its unit, e.g. 512M or 8G".to_owned())
-}
-
-fn parse_exposure(text: &str) -> Result<f64, String> {
-    let stops: Option<f64> = text.parse().ok();
-    stops
-        .filter(|stops| (-64.0..=64.0).contains(stops))
-        .ok_or_else(|| "write a number of stops from -64 to 64, e.g. -1.5".to_owned())
 }
 
 fn parse_error(text: &str) -> Result<f64, String> {
@@ -505,14 +341,6 @@ mod tests {
             "1x1x1",
         ] {
             assert!(parse_size(bad).is_err(), "{bad}");
-        }
-    }
-
-    #[test]
-    fn exposures_are_stops() {
-        assert_eq!(parse_exposure("-1.5"), Ok(-1.5));
-        for bad in ["", "bright", "NaN", "inf", "65"] {
-            assert!(parse_exposure(bad).is_err(), "{bad}");
         }
     }
 }

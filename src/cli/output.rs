@@ -3,6 +3,7 @@
 use super::failure::Failure;
 use super::print_result;
 use crate::film::{self, Aov, EncodeError, Film, Metadata};
+use crate::math;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
@@ -35,6 +36,25 @@ pub(crate) struct Encoding<'a> {
     pub(crate) metadata: Metadata,
 }
 
+impl<'a> Encoding<'a> {
+    /// How an image is encoded that was rendered as `metadata` says.
+    pub(crate) fn new(
+        format: Format,
+        mut metadata: Metadata,
+        exposure: f64,
+        aovs: &'a [Aov],
+    ) -> Encoding<'a> {
+        if format == Format::Png {
+            metadata.push("exposure", exposure);
+        }
+        Encoding {
+            gain: math::pow(2.0, exposure),
+            aovs,
+            metadata,
+        }
+    }
+}
+
 impl Output {
     /// The output that `-o` asks for, or `SCENE.png` in the current folder. Whatever would make writing fail later
     /// fails here, before minutes of rendering.
@@ -50,24 +70,14 @@ impl Output {
             },
             Some(path) => Output {
                 path: Some(path.to_owned()),
-                format: format_of(path)?,
+                format: format_by_name(path)?,
             },
             None => Output {
                 path: Some(default_name(scene)),
                 format: Format::Png,
             },
         };
-        if output.format == Format::Png && !aovs.is_empty() {
-            let names: Vec<_> = aovs.iter().map(|aov| aov.name()).collect();
-            return Err(Failure::usage(
-                format!("a PNG cannot hold {}", names.join(", ")),
-                "write an EXR: -o FILE.exr",
-            ));
-        }
-        if let Some(twice) = (1..aovs.len()).find(|&i| aovs[..i].contains(&aovs[i])) {
-            let message = format!("--aov names {} twice", aovs[twice].name());
-            return Err(Failure::usage(message, "name it once"));
-        }
+        check_aovs(output.format, aovs)?;
         if let Some(path) = &output.path {
             if same_file(path, scene) {
                 let message = format!("\"{}\" is the scene itself", path.display());
@@ -81,19 +91,10 @@ impl Output {
     /// Encodes and writes.
     pub(crate) fn write(&self, film: &Film, encoding: &Encoding<'_>) -> Result<(), Failure> {
         let name = self.to_string();
-        let bytes = self
-            .encode(film, encoding)
-            .map_err(|e| Failure::io(&name, &e))?;
+        let bytes = encode(self.format, film, encoding).map_err(|e| Failure::io(&name, &e))?;
         match &self.path {
             Some(path) => film::write_file(path, &bytes).map_err(|e| Failure::io(&name, &e)),
             None => print_result(&bytes),
-        }
-    }
-
-    fn encode(&self, film: &Film, encoding: &Encoding<'_>) -> Result<Vec<u8>, EncodeError> {
-        match self.format {
-            Format::Png => film::encode_png(film, encoding.gain, &encoding.metadata),
-            Format::Exr => film::encode_exr(film, encoding.aovs, &encoding.metadata),
         }
     }
 
@@ -119,6 +120,40 @@ impl std::fmt::Display for Output {
     }
 }
 
+/// The bytes of an image's file.
+pub(crate) fn encode(
+    format: Format,
+    film: &Film,
+    encoding: &Encoding<'_>,
+) -> Result<Vec<u8>, EncodeError> {
+    match format {
+        Format::Png => film::encode_png(film, encoding.gain, &encoding.metadata),
+        Format::Exr => film::encode_exr(film, encoding.aovs, &encoding.metadata),
+    }
+}
+
+/// The format of a file by its suffix, which must hold the further images that are asked for.
+pub(crate) fn format_of(path: &Path, aovs: &[Aov]) -> Result<Format, Failure> {
+    let format = format_by_name(path)?;
+    check_aovs(format, aovs)?;
+    Ok(format)
+}
+
+fn check_aovs(format: Format, aovs: &[Aov]) -> Result<(), Failure> {
+    if format == Format::Png && !aovs.is_empty() {
+        let names: Vec<_> = aovs.iter().map(|aov| aov.name()).collect();
+        return Err(Failure::usage(
+            format!("a PNG cannot hold {}", names.join(", ")),
+            "write an EXR: -o FILE.exr",
+        ));
+    }
+    if let Some(twice) = (1..aovs.len()).find(|&i| aovs[..i].contains(&aovs[i])) {
+        let message = format!("--aov names {} twice", aovs[twice].name());
+        return Err(Failure::usage(message, "name it once"));
+    }
+    Ok(())
+}
+
 /// An output that cannot be written is an error now.
 pub(crate) fn check_writable(path: &Path) -> Result<(), Failure> {
     film::check_folder(path).map_err(|e| Failure::io(format!("\"{}\"", path.display()), &e))
@@ -129,7 +164,7 @@ fn same_file(a: &Path, b: &Path) -> bool {
     place(a).is_some_and(|a| Some(a) == place(b))
 }
 
-fn format_of(path: &Path) -> Result<Format, Failure> {
+fn format_by_name(path: &Path) -> Result<Format, Failure> {
     let suffix = path.extension().and_then(OsStr::to_str).unwrap_or("");
     match suffix.to_ascii_lowercase().as_str() {
         "png" => Ok(Format::Png),

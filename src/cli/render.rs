@@ -2,17 +2,14 @@
 
 use super::args::RenderArgs;
 use super::failure::Failure;
-use super::output::{Encoding, Format, Output, check_writable};
+use super::output::{Encoding, Output, check_writable};
 use super::progress::Progress;
 use super::stats::Account;
 use super::versus::Versus;
 use super::{advice, diagnostics, interrupt, load, print_result, replay, say};
 use crate::film;
-use crate::math;
 use crate::render::{Control, Rendering, Settings};
 use crate::scene::{RenderDesc, SceneDesc};
-use crate::trace::TraceOptions;
-use crate::trace::isa::Isa;
 use std::ffi::OsStr;
 use std::path::Path;
 use std::sync::Arc;
@@ -22,23 +19,23 @@ use std::time::Instant;
 pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let start = Instant::now();
     if let Some(named) = args.replay.replay {
-        let (loaded, _) = load::scene(&args.scene, args.max_memory)?;
+        let (loaded, _) = load::scene(&args.scene, args.dials.max_memory)?;
         let settings = settings(args, &loaded.desc);
         return replay::run(loaded, settings, named);
     }
-    let output = Output::choose(args.output.as_deref(), &args.scene, &args.aov)?;
+    let output = Output::choose(args.output.as_deref(), &args.scene, &args.dials.aov)?;
     if let Some(path) = &args.stats {
         check_stats(path)?;
     }
     let control = Arc::new(Control::default());
     interrupt::listen(&control);
-    let (loaded, warnings) = load::scene(&args.scene, args.max_memory)?;
+    let (loaded, warnings) = load::scene(&args.scene, args.dials.max_memory)?;
     // If nobody listens on stderr, so be it.
     let _ = diagnostics::print(&warnings);
-    if args.strict {
+    if args.dials.strict {
         Failure::if_any(&warnings)?;
     }
-    if !args.nee.is_on() && loaded.has_punctual_lights() {
+    if !args.dials.nee.is_on() && loaded.has_punctual_lights() {
         say("warning: with --nee off, lights without extent (`light: ..`) do not shine");
     }
     let mut settings = settings(args, &loaded.desc);
@@ -62,14 +59,12 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
             }),
         }
     };
-    let mut encoding = Encoding {
-        gain: math::pow(2.0, args.exposure),
-        aovs: &args.aov,
-        metadata: rendering.metadata.clone(),
-    };
-    if output.format == Format::Png {
-        encoding.metadata.push("exposure", args.exposure);
-    }
+    let encoding = Encoding::new(
+        output.format,
+        rendering.metadata.clone(),
+        args.dials.exposure,
+        &args.dials.aov,
+    );
     if rendering.stats.stopped {
         return Err(write_partial(&output, &rendering, &encoding));
     }
@@ -85,11 +80,11 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
         load,
         files,
         write: writing.elapsed(),
-        isa: isa(args).level().to_string(),
-        tree: args.tree.name(),
+        isa: args.dials.isa().level().to_string(),
+        tree: args.dials.tree.name(),
         advice: String::new(),
     };
-    account.advice = advice::of(&account, args.tree.into());
+    account.advice = advice::of(&account, args.dials.tree.into());
     tell(args, &output, &account)?;
     match versus {
         None => Ok(()),
@@ -113,7 +108,7 @@ fn tell(args: &RenderArgs, output: &Output, account: &Account<'_>) -> Result<(),
     }
     match account.lost() {
         None => Ok(()),
-        Some(lost) if args.strict => Err(Failure::lost_samples(lost, LOST_HINT)),
+        Some(lost) if args.dials.strict => Err(Failure::lost_samples(lost, LOST_HINT)),
         Some(lost) => {
             say(&format!("warning: {lost}\n  = help: {LOST_HINT}"));
             Ok(())
@@ -147,36 +142,14 @@ fn write_partial(output: &Output, rendering: &Rendering, encoding: &Encoding<'_>
 
 /// The scene's settings, overridden by the arguments.
 fn settings(args: &RenderArgs, desc: &SceneDesc) -> Settings {
-    let defaults = Settings::of_scene(desc);
+    let (noise, time) = (args.goal.noise, args.time);
+    // With another end, as many samples as that takes.
+    let endless = (noise.is_some() || time.is_some()).then_some(RenderDesc::MAX_SPP);
     Settings {
-        size: args.size.unwrap_or(defaults.size),
-        spp: args.spp.unwrap_or(match (args.goal.noise, args.time) {
-            (None, None) => defaults.spp,
-            _ => RenderDesc::MAX_SPP,
-        }),
-        noise: args.goal.noise,
-        time: args.time,
-        threads: args.threads.map(usize::from),
-        tile: args.tile,
-        accel: args.accel.into(),
-        quality: args.tree.into(),
-        trace: TraceOptions {
-            max_bounces: args.bounces.unwrap_or(defaults.trace.max_bounces),
-            seed: args.seed,
-            sampler: args.sampler.into(),
-            nee: args.nee.is_on(),
-            mis: args.mis.is_on(),
-            roulette: args.roulette.is_on(),
-            fresnel: args.fresnel.into(),
-            isa: isa(args),
-            features: args.aov.iter().any(|aov| aov.is_feature()),
-            ids: args.aov.iter().any(|aov| aov.is_id()),
-        },
+        noise,
+        time,
+        ..args.dials.settings(desc, args.spp.or(endless))
     }
-}
-
-fn isa(args: &RenderArgs) -> Isa {
-    args.isa.unwrap_or_else(Isa::best)
 }
 
 /// Other suffixes are refused, so that `--stats room.ron` does not cost anyone a scene.

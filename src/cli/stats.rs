@@ -73,7 +73,7 @@ impl Account<'_> {
             words(stages.pilot + stages.trace),
             self.error_bar(),
             self.stats.mrays_per_second(),
-            words(stages.extract),
+            words(stages.pose + stages.extract),
             words(stages.flatten),
             words(stages.bvh),
             megabytes(self.files + self.stats.bytes as u64),
@@ -175,6 +175,7 @@ impl Account<'_> {
             "bytes": { "files": self.files, "buffers": stats.bytes },
             "seconds": {
                 "load": self.load.as_secs_f64(),
+                "pose": stages.pose.as_secs_f64(),
                 "extract": stages.extract.as_secs_f64(),
                 "flatten": stages.flatten.as_secs_f64(),
                 "bvh": stages.bvh.as_secs_f64(),
