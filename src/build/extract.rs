@@ -4,7 +4,7 @@ use super::meshes::MeshKey;
 use crate::asset::{Light, MeshId};
 use crate::flat::ObjectId;
 use crate::world::{
-    AuthoringIndex, Camera, Emissive, Material, Normals, Parent, Pose, Shape, Spin,
+    AuthoringIndex, Camera, Emissive, Keys, Material, Normals, Parent, Pose, Shape, Spin,
 };
 use hecs::{Entity, World};
 use std::collections::{HashMap, HashSet};
@@ -33,6 +33,8 @@ pub(crate) struct Look {
     /// Overrides what a mesh file says.
     pub(crate) material: Option<Material>,
     pub(crate) emission: Option<[f64; 3]>,
+    /// Whether the entity or an ancestor ever moves: known from the scene, not from the frame.
+    pub(crate) moves: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -47,8 +49,6 @@ pub(crate) struct MeshItem {
     pub(crate) look: Look,
     pub(crate) mesh: MeshId,
     pub(crate) normals: Normals,
-    /// Whether the entity or an ancestor ever moves: known from the scene, not from the frame.
-    pub(crate) moves: bool,
 }
 
 impl MeshItem {
@@ -90,6 +90,7 @@ pub(crate) fn extract(world: &World, pose_of: impl Fn(Entity) -> Pose) -> Extrac
             pose: pose_of(entity),
             material: material.copied(),
             emission: emissive.map(|e| e.0),
+            moves: moving.contains(&entity),
         };
         match shape.copied() {
             Some(Shape::Sphere { radius, inverted }) => extracted.spheres.push(SphereItem {
@@ -101,7 +102,6 @@ pub(crate) fn extract(world: &World, pose_of: impl Fn(Entity) -> Pose) -> Extrac
                 look,
                 mesh,
                 normals,
-                moves: moving.contains(&entity),
             }),
             None => {}
         }
@@ -116,14 +116,14 @@ pub(crate) fn extract(world: &World, pose_of: impl Fn(Entity) -> Pose) -> Extrac
     extracted
 }
 
-/// Every entity that turns, or whose ancestor does.
+/// Every entity that turns or has keys, or whose ancestor does.
 fn moving(world: &World) -> HashSet<Entity> {
     let mut children: HashMap<Entity, Vec<Entity>> = HashMap::new();
     for (entity, parent) in world.query::<(Entity, &Parent)>().iter() {
         children.entry(parent.0).or_default().push(entity);
     }
     let mut next: Vec<Entity> = world
-        .query::<(Entity, &Spin)>()
+        .query::<(Entity, hecs::Or<&Spin, &Keys>)>()
         .iter()
         .map(|(entity, _)| entity)
         .collect();

@@ -7,7 +7,7 @@ use crate::asset::{AssetStore, Light, Mesh, MeshId};
 use crate::diag::{Diagnostic, Lines};
 use crate::math::{DAffine3, DVec3, sin_cos_deg, unit};
 use crate::scene::{Placed, SceneDesc};
-use crate::world::{AuthoringIndex, Camera, Emissive, Material, Name, Pose, Shape, Spin};
+use crate::world::{AuthoringIndex, Camera, Emissive, Keys, Material, Name, Pose, Shape, Spin};
 use hecs::World;
 use std::collections::HashMap;
 
@@ -104,6 +104,10 @@ impl<'a> Posed<'a> {
             })
         });
         let turns = world.query::<&Spin>().iter().any(|s| s.deg_per_s != 0.0);
+        let goes = world
+            .query::<&Keys>()
+            .iter()
+            .any(|keys| keys.times().nth(1).is_some());
         let mut items = items(world, store);
         let extent = find_walls(&mut items, view.eye);
         Some(Posed {
@@ -114,7 +118,7 @@ impl<'a> Posed<'a> {
             view,
             items,
             lights: lights.collect(),
-            moves: turns && desc.animation.frames.len() > 1,
+            moves: (turns || goes) && desc.animation.frames.len() > 1,
         })
     }
 

@@ -45,7 +45,6 @@ pub(super) struct RawEntity<'a> {
 
 pub(super) fn entity<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<RawEntity<'a>> {
     let fields = Fields::read(reader, node, "an entity", &COMPONENTS)?;
-    motion::refuse(&fields);
     let reference =
         |name: &str, what: &str| fields.read_if(name, |r, n| Some((r.string(n, what)?, n)));
     let desc = EntityDesc {
@@ -55,6 +54,7 @@ pub(super) fn entity<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<RawEntit
         material: None,
         transform: fields.read_or("transform", TransformDesc::default(), transform),
         spin: fields.read_if("spin", spin),
+        keys: motion::keys(&fields),
         emissive: fields.read_if("emissive", emissive),
         normals: fields.read_if("normals", normals),
         camera: fields.read_if("camera", settings::entity_camera),

@@ -3,7 +3,7 @@
 use super::entity::RawEntity;
 use super::layer::Node;
 use super::reader::Reader;
-use super::schema::{NamedMaterial, ShapeDesc};
+use super::schema::{EntityDesc, NamedMaterial, ShapeDesc};
 use crate::diag::{Diagnostic, codes};
 use std::collections::BTreeMap;
 
@@ -180,10 +180,7 @@ fn report_cycle(reader: &Reader<'_>, entities: &[RawEntity<'_>], cycle: &[usize]
 
 /// For each entity, the nearest of itself and its ancestors that has a non-uniform scale.
 fn stretchers(entities: &[RawEntity<'_>]) -> Vec<Option<usize>> {
-    let stretches = |i: usize| {
-        let [x, y, z] = entities[i].desc.transform.scale;
-        x.abs() != y.abs() || y.abs() != z.abs()
-    };
+    let stretches = |i: usize| stretch(&entities[i].desc).is_some();
     let mut known: Vec<Option<Option<usize>>> = vec![None; entities.len()];
     let mut chain = Vec::new();
     for start in 0..entities.len() {
@@ -201,6 +198,13 @@ fn stretchers(entities: &[RawEntity<'_>]) -> Vec<Option<usize>> {
     known.into_iter().map(Option::flatten).collect()
 }
 
+/// The first of an entity's scales, of its transform and of its keys, that is not uniform.
+fn stretch(desc: &EntityDesc) -> Option<[f64; 3]> {
+    let keys = desc.keys.iter().flat_map(|keys| &keys.keys);
+    let mut scales = std::iter::once(desc.transform.scale).chain(keys.filter_map(|key| key.scale));
+    scales.find(|[x, y, z]| x.abs() != y.abs() || y.abs() != z.abs())
+}
+
 /// A sphere must stay a sphere.
 fn check_sphere(
     reader: &Reader<'_>,
@@ -214,7 +218,9 @@ fn check_sphere(
     else {
         return;
     };
-    let [x, y, z] = entities[by].desc.transform.scale;
+    let Some([x, y, z]) = stretch(&entities[by].desc) else {
+        return;
+    };
     let whose = if by == index {
         "its own".to_owned()
     } else {

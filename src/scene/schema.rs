@@ -273,6 +273,8 @@ pub struct EntityDesc {
     pub transform: TransformDesc,
     /// Turning.
     pub spin: Option<SpinDesc>,
+    /// Moving along keys, in place of those parts of `transform` that they name.
+    pub keys: Option<KeysDesc>,
     /// Emitted radiance in W·sr⁻¹·m⁻².
     pub emissive: Option<[f64; 3]>,
     /// Normals of a mesh; default `File`, and where the file has none, `Smooth(angle_deg: 60)` for OBJ, `Flat` for glTF.
@@ -384,6 +386,41 @@ pub struct SpinDesc {
     pub deg_per_s: f64,
     /// A point of the parent's frame; default the entity's `translate`.
     pub pivot: Option<[f64; 3]>,
+}
+
+/// `keys: [..]` with `ease: ..`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KeysDesc {
+    /// At rising times, at least one.
+    pub keys: Vec<KeyDesc>,
+    /// How one comes from each to the next. Default Linear.
+    pub ease: EaseDesc,
+}
+
+/// `(t, translate, rotate, scale)`: what is not given has no key at this time. Before its first key a part is as there, and
+/// behind its last too.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KeyDesc {
+    /// Seconds.
+    pub t: f64,
+    /// As in a transform.
+    pub translate: Option<[f64; 3]>,
+    /// As in a transform. Between two keys it turns the shorter way, at most half a turn.
+    pub rotate: Option<RotateDesc>,
+    /// As in a transform; none goes through 0.
+    pub scale: Option<[f64; 3]>,
+}
+
+/// `ease: Linear`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum EaseDesc {
+    /// At constant speed.
+    #[default]
+    Linear,
+    /// From rest to rest: 3u² − 2u³.
+    Smooth,
+    /// As the key before says.
+    Step,
 }
 
 /// Normals of a mesh.

@@ -2,7 +2,7 @@
 
 use crate::asset::{Filter, MeshId, TextureId, Wrap};
 pub use crate::asset::{Light, Scattering};
-use crate::math::{DAffine3, DMat3, DVec3};
+use crate::math::{DAffine3, DMat3, DQuat, DVec3};
 use hecs::Entity;
 
 /// T · R · S in the parent's frame.
@@ -119,6 +119,52 @@ pub struct Spin {
     pub deg_per_s: f64,
     /// `None`: the entity's own `translate`.
     pub pivot: Option<DVec3>,
+}
+
+/// Moves along keys in the parent's frame: a part that has keys is theirs, in place of the [`Transform`]'s.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Keys {
+    /// In place of `translate`.
+    pub translate: Track<DVec3>,
+    /// In place of `rotate`.
+    pub rotate: Track<Turn>,
+    /// In place of `scale`.
+    pub scale: Track<DVec3>,
+}
+
+/// A value at rising times; no times if it has no keys.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Track<T> {
+    /// Seconds, rising.
+    pub times: Vec<f64>,
+    /// At each of the times.
+    pub values: Vec<T>,
+    /// Of splines, with which each key is reached and left, per second; else empty.
+    pub tangents: Vec<[[f64; 4]; 2]>,
+    /// Between the times.
+    pub ease: Ease,
+}
+
+/// How a value comes from one key to the next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ease {
+    /// At constant speed.
+    Linear,
+    /// From rest to rest.
+    Smooth,
+    /// It stays what it was.
+    Step,
+    /// Along cubic splines.
+    Spline,
+}
+
+/// A rotation at a key: as authored, and for the way to the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Turn {
+    /// Quarter turns are exact.
+    pub matrix: DMat3,
+    /// Of length 1.
+    pub quaternion: DQuat,
 }
 
 /// The order of a scene: first by entity, then by node.

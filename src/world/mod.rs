@@ -12,10 +12,11 @@ mod expand;
 mod files;
 mod pose;
 mod spawn;
+mod track;
 
 pub use components::{
-    AuthoringIndex, Camera, Color, Emissive, Light, Material, Name, Normals, Parent, Pose,
-    Scattering, Shape, Spin, Transform,
+    AuthoringIndex, Camera, Color, Ease, Emissive, Keys, Light, Material, Name, Normals, Parent,
+    Pose, Scattering, Shape, Spin, Track, Transform, Turn,
 };
-pub use pose::{pose, poses};
+pub use pose::{Time, pose, poses};
 pub use spawn::{Spawned, open_files, spawn};

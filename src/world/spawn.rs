@@ -1,8 +1,8 @@
 //! Spawn: a description becomes a world, and the files that it names a store.
 
 use super::components::{
-    AuthoringIndex, Camera, Color, Emissive, Material, Name, Normals, Parent, Scattering, Shape,
-    Spin, Transform,
+    AuthoringIndex, Camera, Color, Ease, Emissive, Keys, Material, Name, Normals, Parent,
+    Scattering, Shape, Spin, Track, Transform, Turn,
 };
 use super::expand::{self, Root, expand};
 use super::{Pose, codes, files::Files, pose};
@@ -10,10 +10,12 @@ use crate::asset::{AssetStore, Filter, Light, Loader, Mesh, MeshId, ModelId, Wra
 use crate::diag::{self, Diagnostic, Severity};
 use crate::math::{DMat3, DVec3, axis_angle_deg, euler_deg, quaternion, unit};
 use crate::scene::{
-    CameraDesc, CameraPose, ColorDesc, EntityDesc, GltfDesc, LightDesc, MaterialDesc, NormalsDesc,
-    Placed, RotateDesc, SceneDesc, ShapeDesc, TextureFilterDesc, TransformDesc, WrapDesc,
+    CameraDesc, CameraPose, ColorDesc, EaseDesc, EntityDesc, GltfDesc, KeyDesc, KeysDesc,
+    LightDesc, MaterialDesc, NormalsDesc, Placed, RotateDesc, SceneDesc, ShapeDesc,
+    TextureFilterDesc, TransformDesc, WrapDesc,
 };
 use hecs::{Entity, EntityBuilder, World};
+use std::collections::BTreeSet;
 
 /// What [`spawn`] gives.
 pub struct Spawned {
@@ -99,10 +101,13 @@ pub fn spawn(desc: &SceneDesc, loader: Loader) -> Result<Spawned, Vec<Diagnostic
         Some(error) if error.severity == Severity::Error => errors.push(error),
         found => warnings.extend(found),
     }
-    pose(&mut world, 0.0);
     nodes.extend(entities.into_iter().enumerate());
-    nodes.sort_by_key(|(i, _)| *i);
-    errors.extend(out_of_reach(desc, &world, &nodes));
+    let mut lost = BTreeSet::new();
+    for t in key_times(&world).into_iter().chain([0.0]) {
+        pose(&mut world, t);
+        lost.extend(out_of_reach(&world, &nodes));
+    }
+    errors.extend(lost.into_iter().map(|i| told_out_of_reach(desc, i)));
     if errors.is_empty() {
         Ok(Spawned {
             world,
@@ -229,6 +234,9 @@ fn components(entity: &EntityDesc, index: u32, source: Source) -> EntityBuilder 
             pivot: spin.pivot.map(DVec3::from_array),
         });
     }
+    if let Some(keys) = &entity.keys {
+        builder.add(keys_of(keys));
+    }
     if let Some(radiance) = entity.emissive {
         builder.add(Emissive(radiance));
     }
@@ -239,6 +247,35 @@ fn components(entity: &EntityDesc, index: u32, source: Source) -> EntityBuilder 
         builder.add(light_of(light));
     }
     builder
+}
+
+fn keys_of(desc: &KeysDesc) -> Keys {
+    let turn = |desc: RotateDesc| match desc {
+        RotateDesc::Quat(q) => Turn::of_quaternion(q),
+        desc => Turn::of_matrix(rotation(desc)),
+    };
+    let vector = DVec3::from_array;
+    Keys {
+        translate: track(desc, |key| key.translate.map(vector)),
+        rotate: track(desc, |key| key.rotate.map(turn)),
+        scale: track(desc, |key| key.scale.map(vector)),
+    }
+}
+
+/// The keys that have a value of this part.
+fn track<T>(desc: &KeysDesc, value: impl Fn(&KeyDesc) -> Option<T>) -> Track<T> {
+    let keys = desc.keys.iter();
+    let (times, values) = keys.filter_map(|key| Some((key.t, value(key)?))).unzip();
+    Track {
+        times,
+        values,
+        tangents: Vec::new(),
+        ease: match desc.ease {
+            EaseDesc::Linear => Ease::Linear,
+            EaseDesc::Smooth => Ease::Smooth,
+            EaseDesc::Step => Ease::Step,
+        },
+    }
 }
 
 fn light_of(desc: LightDesc) -> Light {
@@ -268,12 +305,16 @@ fn normals(desc: Option<NormalsDesc>) -> Normals {
 fn transform(desc: &TransformDesc) -> Transform {
     Transform {
         translate: DVec3::from_array(desc.translate),
-        rotate: match desc.rotate {
-            RotateDesc::Euler(deg) => euler_deg(DVec3::from_array(deg)),
-            RotateDesc::AxisAngle { axis, deg } => axis_angle_deg(DVec3::from_array(axis), deg),
-            RotateDesc::Quat(q) => quaternion(q),
-        },
+        rotate: rotation(desc.rotate),
         scale: DVec3::from_array(desc.scale),
+    }
+}
+
+fn rotation(desc: RotateDesc) -> DMat3 {
+    match desc {
+        RotateDesc::Euler(deg) => euler_deg(DVec3::from_array(deg)),
+        RotateDesc::AxisAngle { axis, deg } => axis_angle_deg(DVec3::from_array(axis), deg),
+        RotateDesc::Quat(q) => quaternion(q),
     }
 }
 
@@ -388,9 +429,23 @@ fn missing_uv(desc: &SceneDesc, entity: usize, mesh: &Mesh) -> Option<Diagnostic
     Some(diagnostic.in_file(&desc.file).at(&desc.source, at, len))
 }
 
-/// Entities whose composed place or size, or that of a node under them, is not finite. `entities` are in the order of
-/// the scene, each with its index.
-fn out_of_reach(desc: &SceneDesc, world: &World, entities: &[(usize, Entity)]) -> Vec<Diagnostic> {
+/// Times at which something has a key, at most [`MOST_TIMES`] of them, from first to last.
+fn key_times(world: &World) -> Vec<f64> {
+    let mut keyed = world.query::<&Keys>();
+    let mut times: Vec<f64> = keyed.iter().flat_map(Keys::times).collect();
+    times.sort_unstable_by(f64::total_cmp);
+    times.dedup();
+    let step = times.len().div_ceil(MOST_TIMES).max(1);
+    let last = times.last().copied();
+    times.into_iter().step_by(step).chain(last).collect()
+}
+
+/// So many times are looked at for entities that leave what numbers can say: what is that far away has few keys.
+const MOST_TIMES: usize = 256;
+
+/// Indices of the entities whose composed place or size, or that of a node under them, is not finite. `entities` come each
+/// with its index.
+fn out_of_reach(world: &World, entities: &[(usize, Entity)]) -> Vec<usize> {
     let reachable = |entity: Entity| {
         let pose = world.get::<&Pose>(entity).map(|p| *p).unwrap_or_default();
         let radius = match world.get::<&Shape>(entity).as_deref() {
@@ -400,16 +455,15 @@ fn out_of_reach(desc: &SceneDesc, world: &World, entities: &[(usize, Entity)]) -
         pose.affine().is_finite() && (radius * pose.size).is_normal()
     };
     let lost = entities.iter().filter(|(_, e)| !reachable(*e));
-    let mut lost: Vec<usize> = lost.map(|(i, _)| *i).collect();
-    lost.dedup();
-    let told = lost.into_iter().map(|i| {
-        let (at, len) = (desc.entities[i].at, desc.entities[i].len);
-        let says = "the place or the size of this entity is beyond the range of 64-bit numbers";
-        Diagnostic::error(codes::OUT_OF_REACH, says)
-            .in_file(&desc.file)
-            .at(&desc.source, at, len)
-    });
-    told.collect()
+    lost.map(|(i, _)| *i).collect()
+}
+
+fn told_out_of_reach(desc: &SceneDesc, entity: usize) -> Diagnostic {
+    let Placed { at, len, .. } = desc.entities[entity];
+    let says = "the place or the size of this entity is beyond the range of 64-bit numbers";
+    Diagnostic::error(codes::OUT_OF_REACH, says)
+        .in_file(&desc.file)
+        .at(&desc.source, at, len)
 }
 
 #[cfg(test)]

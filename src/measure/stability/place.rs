@@ -2,13 +2,13 @@
 
 use super::Placing;
 use crate::math::DVec3;
-use crate::world::{Camera, Light, Parent, Spin, Transform};
+use crate::world::{Camera, Keys, Light, Parent, Spin, Transform};
 use hecs::{Entity, World};
 
 /// Where things stand as authored.
 pub(super) struct Home {
     /// Of entities without a parent; the others follow.
-    roots: Vec<(Entity, Transform, Option<Spin>)>,
+    roots: Vec<(Entity, Transform, Option<Spin>, Option<Keys>)>,
     cameras: Vec<(Entity, Camera)>,
     lights: Vec<(Entity, Light)>,
 }
@@ -16,11 +16,18 @@ pub(super) struct Home {
 impl Home {
     pub(super) fn of(world: &World) -> Home {
         let roots = world
-            .query::<(Entity, Option<&Transform>, Option<&Spin>, Option<&Parent>)>()
+            .query::<(
+                Entity,
+                Option<&Transform>,
+                Option<&Spin>,
+                Option<&Keys>,
+                Option<&Parent>,
+            )>()
             .iter()
-            .filter(|(_, _, _, parent)| parent.is_none())
-            .map(|(e, transform, spin, _)| {
-                (e, transform.copied().unwrap_or_default(), spin.copied())
+            .filter(|row| row.4.is_none())
+            .map(|(e, transform, spin, keys, _)| {
+                let transform = transform.copied().unwrap_or_default();
+                (e, transform, spin.copied(), keys.cloned())
             })
             .collect();
         let cameras = world.query::<(Entity, &Camera)>();
@@ -37,7 +44,7 @@ impl Home {
         let Placing { scale, offset } = placing;
         let shift = DVec3::new(1.0, -1.0, 1.0) * (offset * width * scale);
         // The entities were listed from this world: that there is "no such entity" cannot happen here and below.
-        for (entity, transform, spin) in &self.roots {
+        for (entity, transform, spin, keys) in &self.roots {
             let mut transform = *transform;
             transform.translate = transform.translate * scale + shift;
             transform.scale *= scale;
@@ -45,6 +52,9 @@ impl Home {
             if let Some(mut spin) = *spin {
                 spin.pivot = spin.pivot.map(|pivot| pivot * scale + shift);
                 let _ = world.insert_one(*entity, spin);
+            }
+            if let Some(keys) = keys {
+                let _ = world.insert_one(*entity, keys.placed(scale, shift));
             }
         }
         // What a lens measures is in the world's units, whatever carries it.

@@ -12,9 +12,9 @@ mod text;
 mod tests;
 
 use super::schema::{
-    AnimationDesc, CameraDesc, CameraPose, ColorDesc, EntityDesc, FilterDesc, GltfDesc, LightDesc,
-    MaterialDesc, NormalsDesc, RenderDesc, RotateDesc, SceneDesc, ShapeDesc, SpinDesc,
-    TextureFilterDesc, TransformDesc, WrapDesc,
+    AnimationDesc, CameraDesc, CameraPose, ColorDesc, EaseDesc, EntityDesc, FilterDesc, GltfDesc,
+    KeyDesc, KeysDesc, LightDesc, MaterialDesc, NormalsDesc, RenderDesc, RotateDesc, SceneDesc,
+    ShapeDesc, SpinDesc, TextureFilterDesc, TransformDesc, WrapDesc,
 };
 use super::{VERSION, srgb};
 use std::fmt::Write;
@@ -235,6 +235,12 @@ fn components(desc: &SceneDesc, entity: &EntityDesc) -> Vec<String> {
     if let Some(value) = &entity.spin {
         fields = fields.with("spin", spin(value));
     }
+    if let Some(value) = &entity.keys {
+        fields = fields.with("keys", keys(value));
+        fields = fields.unless(&EaseDesc::default(), "ease", &value.ease, |e| {
+            format!("{e:?}")
+        });
+    }
     if let Some(radiance) = &entity.emissive {
         fields = fields.with("emissive", format!("(radiance: {})", vector(radiance)));
     }
@@ -346,4 +352,22 @@ fn spin(spin: &SpinDesc) -> String {
         None => fields,
     }
     .close()
+}
+
+fn keys(desc: &KeysDesc) -> String {
+    let key = |key: &KeyDesc| {
+        let mut fields = Fields::default().with("t", number(key.t));
+        if let Some(v) = &key.translate {
+            fields = fields.with("translate", vector(v));
+        }
+        if let Some(r) = &key.rotate {
+            fields = fields.with("rotate", rotate(r));
+        }
+        if let Some(s) = &key.scale {
+            fields = fields.with("scale", scale(s));
+        }
+        fields.close()
+    };
+    let keys: Vec<String> = desc.keys.iter().map(key).collect();
+    format!("[{}]", keys.join(", "))
 }
