@@ -64,7 +64,7 @@ codes! {
     GLTF_NOTHING = "W135": "a glTF file whose default scene has nothing to render";
     GLTF_NO_SCENE = "W136": "a glTF file without a scene: its root nodes are shown";
     GLTF_NO_TRIANGLES = "W137": "primitives of a glTF file that have no triangles, which are skipped";
-    GLTF_AT_REST = "W138": "animations, skins or morph targets of a glTF file, which is shown at rest";
+    GLTF_AT_REST = "W138": "skins, morph targets or further animations of a glTF file, which are left out";
     GLTF_CAMERA = "W139": "cameras of a glTF file that are not perspective";
     GLTF_GLOSS = "W140": "materials of a glTF file whose gloss luxel does not have";
     GLTF_NOT_MODELLED = "W141": "what materials of a glTF file ask for and luxel does not model";

@@ -308,6 +308,44 @@ pub struct ModelNode {
     pub camera_vfov_deg: Option<f64>,
     /// The light here, along −Z.
     pub light: Option<Light>,
+    /// How the node moves.
+    pub motion: Option<Motion>,
+}
+
+/// How a node moves: what has a curve is the curve's, in place of the transform's.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Motion {
+    /// x, y, z and nothing.
+    pub translate: Option<Curve>,
+    /// Quaternions x, y, z, w, about 1 long.
+    pub rotate: Option<Curve>,
+    /// x, y, z and nothing; never 0.
+    pub scale: Option<Curve>,
+}
+
+/// Values at times; before the first and behind the last as there.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Curve {
+    /// Seconds, rising, at least one.
+    pub times: Vec<f64>,
+    /// At each of the times.
+    pub values: Vec<[f64; 4]>,
+    /// Of splines, with which each value is reached and left, per second; else empty.
+    pub tangents: Vec<[[f64; 4]; 2]>,
+    /// Between the times.
+    pub interpolation: Interpolation,
+}
+
+/// How a curve goes from one value to the next.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Interpolation {
+    /// Straight; rotations about one axis.
+    #[default]
+    Linear,
+    /// Not at all, until the next.
+    Step,
+    /// Along cubic splines.
+    Spline,
 }
 
 /// Where a node is.

@@ -78,6 +78,9 @@ pub fn convert_model(model: &Model, loader: &Loader, points: &[DVec3], path: &st
             entity.material = scene.plain_material(mesh);
             scene.shines |= emits(mesh);
         }
+        if let Some(motion) = &node.motion {
+            entity.keys = node::keys(motion, &name, &mut scene.notes);
+        }
         if let Some(vfov_deg) = node.camera_vfov_deg {
             entity.camera = scene.camera(vfov_deg, &name);
         }
@@ -133,6 +136,21 @@ impl Scene {
         Some(self.materials.len() - 1)
     }
 
+    /// As long as the last key, at the default rate.
+    fn animation(&self) -> AnimationDesc {
+        let default = AnimationDesc::default();
+        let keys = self.entities.iter().filter_map(|e| e.keys.as_ref());
+        let last = keys
+            .filter_map(|keys| Some(keys.keys.last()?.t))
+            .fold(0.0, f64::max);
+        // The cast saturates.
+        let end = (last * default.fps).ceil() as u32;
+        AnimationDesc {
+            frames: 0..end.max(default.frames.end),
+            ..default
+        }
+    }
+
     /// Adds what is missing.
     fn finish(mut self, points: &[DVec3]) -> Converted {
         let bounds = Bounds::of(points);
@@ -154,6 +172,7 @@ impl Scene {
             let lamp = bounds.lamp(unique("lamp", &mut names));
             self.entities.push(lamp);
         }
+        let animation = self.animation();
         let placed = |value| Placed {
             value,
             at: 0,
@@ -168,7 +187,7 @@ impl Scene {
                 camera,
                 materials: self.materials,
                 entities: self.entities.into_iter().map(placed).collect(),
-                animation: AnimationDesc::default(),
+                animation,
             },
             notes: self.notes,
         }

@@ -1,8 +1,10 @@
 //! What a node of a file is in the words of a scene: its transform, its material.
 
-use crate::asset::{AlphaMode, Mesh, NodeTransform, Scattering};
+use crate::asset::{AlphaMode, Curve, Interpolation, Mesh, Motion, NodeTransform, Scattering};
 use crate::math::{DMat3, DVec3};
-use crate::scene::{ColorDesc, MaterialDesc, RotateDesc, TransformDesc};
+use crate::scene::{
+    ColorDesc, EaseDesc, KeyDesc, KeysDesc, MaterialDesc, RotateDesc, TransformDesc,
+};
 
 /// Columns of a matrix whose cosine is below this are at right angles: files hold single precision.
 const SHEAR: f64 = 1e-5;
@@ -38,6 +40,51 @@ pub(super) fn transform(
             }
         }
     }
+}
+
+/// The keys of a node, at all of its times. A scene has one ease for all of an entity's parts, and no splines: where a file
+/// has, the way from key to key is straight, and a note says so.
+pub(super) fn keys(motion: &Motion, name: &str, notes: &mut Vec<String>) -> Option<KeysDesc> {
+    let curves = [&motion.translate, &motion.rotate, &motion.scale];
+    let curves: Vec<&Curve> = curves.into_iter().flatten().collect();
+    let first = curves.first()?.interpolation;
+    let same = curves.iter().all(|curve| curve.interpolation == first);
+    let ease = match (same, first) {
+        (true, Interpolation::Step) => EaseDesc::Step,
+        (true, Interpolation::Linear) => EaseDesc::Linear,
+        _ => {
+            notes.push(format!(
+                "{name:?} moves along curves, here straight from key to key."
+            ));
+            EaseDesc::Linear
+        }
+    };
+    let mut times: Vec<f64> = curves
+        .iter()
+        .flat_map(|curve| &curve.times)
+        .copied()
+        .collect();
+    times.sort_unstable_by(f64::total_cmp);
+    times.dedup();
+    let at = |curve: &Option<Curve>, t: f64| {
+        let curve = curve.as_ref()?;
+        let at = curve
+            .times
+            .binary_search_by(|time| time.total_cmp(&t))
+            .ok()?;
+        curve.values.get(at).copied()
+    };
+    let vector = |[x, y, z, _]: [f64; 4]| [x, y, z];
+    let key = |t: f64| KeyDesc {
+        t,
+        translate: at(&motion.translate, t).map(vector),
+        rotate: at(&motion.rotate, t).map(RotateDesc::Quat),
+        scale: at(&motion.scale, t).map(vector),
+    };
+    Some(KeysDesc {
+        keys: times.into_iter().map(key).collect(),
+        ease,
+    })
 }
 
 /// A scene refuses a scale of 0, by which glTF files hide nodes.

@@ -1,9 +1,10 @@
 //! The nodes of a glTF file become entities under the one that names the file.
 
 use super::components::{
-    AuthoringIndex, Camera, Emissive, Material, Name, Normals, Parent, Shape, Transform,
+    AuthoringIndex, Camera, Ease, Emissive, Keys, Material, Name, Normals, Parent, Shape, Track,
+    Transform, Turn,
 };
-use crate::asset::{MeshId, Model, ModelNode, NodeTransform};
+use crate::asset::{Curve, Interpolation, MeshId, Model, ModelNode, Motion, NodeTransform};
 use crate::math::{DVec3, quaternion};
 use crate::scene::CameraDesc;
 use hecs::{Entity, EntityBuilder, World};
@@ -42,6 +43,9 @@ pub(super) fn expand(world: &mut World, model: &Model, root: &Root) -> Vec<Entit
 fn components(node: &ModelNode, mesh: Option<MeshId>, root: &Root) -> EntityBuilder {
     let mut builder = EntityBuilder::new();
     builder.add(transform(&node.transform));
+    if let Some(motion) = &node.motion {
+        builder.add(keys(motion));
+    }
     if let Some(name) = &node.name {
         builder.add(Name(name.clone()));
     }
@@ -62,6 +66,29 @@ fn components(node: &ModelNode, mesh: Option<MeshId>, root: &Root) -> EntityBuil
         builder.add(emissive);
     }
     builder
+}
+
+fn keys(motion: &Motion) -> Keys {
+    let vector = |[x, y, z, _]: [f64; 4]| DVec3::new(x, y, z);
+    Keys {
+        translate: track(motion.translate.as_ref(), vector),
+        rotate: track(motion.rotate.as_ref(), Turn::of_quaternion),
+        scale: track(motion.scale.as_ref(), vector),
+    }
+}
+
+fn track<T>(curve: Option<&Curve>, value: impl Fn([f64; 4]) -> T) -> Track<T> {
+    let curve = curve.cloned().unwrap_or_default();
+    Track {
+        times: curve.times,
+        values: curve.values.into_iter().map(value).collect(),
+        tangents: curve.tangents,
+        ease: match curve.interpolation {
+            Interpolation::Linear => Ease::Linear,
+            Interpolation::Step => Ease::Step,
+            Interpolation::Spline => Ease::Spline,
+        },
+    }
 }
 
 fn transform(node: &NodeTransform) -> Transform {

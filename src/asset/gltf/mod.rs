@@ -10,6 +10,7 @@
 //! where its node is, in the pose that it was bound in) and morph targets.
 
 mod accessor;
+mod animations;
 mod attributes;
 mod buffers;
 mod container;

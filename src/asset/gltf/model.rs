@@ -126,13 +126,13 @@ fn look(
     Ok(made)
 }
 
-/// One warning for all that would move.
+/// One warning for all that would bend.
 fn say_at_rest(source: &Source, notes: &mut Notes) {
     let count = |name: &str| {
         let items = source.json.get(name).and_then(Value::as_array);
         items.map_or(0, Vec::len)
     };
-    let (animations, skins) = (count("animations"), count("skins"));
+    let skins = count("skins");
     let meshes = source.json.get("meshes").and_then(Value::as_array);
     let morphs = |mesh: &&Value| {
         let primitives = mesh.get("primitives").and_then(Value::as_array);
@@ -141,7 +141,6 @@ fn say_at_rest(source: &Source, notes: &mut Notes) {
     };
     let morphs = meshes.into_iter().flatten().filter(morphs).count();
     let moving = [
-        (animations, "animations", "/animations"),
         (skins, "skins", "/skins"),
         (morphs, "morph targets", "/meshes"),
     ];
@@ -154,11 +153,11 @@ fn say_at_rest(source: &Source, notes: &mut Notes) {
         .map(|(n, of, _)| format!("{of} ({n})"))
         .collect();
     let says = format!(
-        "not modelled, and everything is at rest: {}",
+        "not modelled, and what they would bend is as it was made: {}",
         list.join(", ")
     );
     let warning = Diagnostic::warning(codes::GLTF_AT_REST, says).pointer(*first);
-    notes.tell(warning.hint("bake the pose that you want, or turn the entity by `spin`"));
+    notes.tell(warning.hint("bake the pose that you want"));
 }
 
 fn nothing() -> Diagnostic {

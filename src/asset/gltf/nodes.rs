@@ -2,8 +2,9 @@
 //!
 //! Enters: a typed document. Leave: [`ModelNode`]s in the order of a depth-first walk, with their cameras and lights. The
 //! walk keeps a stack of its own and enters no node twice, so that neither cycles nor depth can hurt. Deliberately absent:
-//! skins and animations, so that everything stands at rest.
+//! skins.
 
+use super::animations::motions;
 use super::exact::{exact, exact_one};
 use super::lights::light;
 use super::notes::{Notes, Topic};
@@ -39,6 +40,7 @@ const FLAT_CAMERA: Topic = Topic {
 ///
 /// A node that is scaled to nothing hides all below it (section 3.5.3).
 pub(super) fn walk(source: &Source, notes: &mut Notes) -> Vec<ModelNode> {
+    let mut motions = motions(source, notes);
     let document = &source.document;
     let mut seen = vec![false; document.nodes().len()];
     let mut nodes: Vec<ModelNode> = Vec::new();
@@ -60,6 +62,7 @@ pub(super) fn walk(source: &Source, notes: &mut Notes) -> Vec<ModelNode> {
             mesh: node.mesh().map(|mesh| mesh.index()),
             camera_vfov_deg: camera(source, &node, notes),
             light: light(source, &node),
+            motion: motions.remove(&index),
         });
         let here = Some(nodes.len() - 1);
         let children: Vec<usize> = node.children().map(|child| child.index()).collect();

@@ -1,4 +1,4 @@
-//! Rules of animations (specification, section 3.11). luxel shows the scene at rest: everything is a warning.
+//! Rules of animations (specification, section 3.11). What breaks them stays at rest: everything is a warning.
 
 use super::Rules;
 use super::formats::{KEY_TIMES, of_path};
