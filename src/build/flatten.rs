@@ -3,17 +3,21 @@
 use super::bvh::{Accel, Primitives, Quality, SphereItem};
 use super::extract::{Extracted, MeshItem};
 use super::instances::{instance, maps};
+use super::kept::{Flat, Kept, Sources};
 use super::lights::{self, Collector};
 use super::materials::{Means, Tables};
-use super::meshes::{Keep, LocalMesh, MeshKey, Part, Soup, slot, smooth_normals};
+use super::meshes::{
+    Keep, LocalMesh, MeshKey, Part, Soup, slot, smooth_normals, triangle, used_slots,
+};
 use super::rebase::to_scene;
 use super::spheres;
-use crate::asset::{AssetStore, PerCorner};
+use crate::asset::{AssetStore, MeshId, PerCorner};
 use crate::flat::{
     Fresnel, Geometry, Instance, LightPlace, Lights, Material, MaterialId, Rebase, Spheres, Texture,
 };
 use crate::math::{Aabb, DAffine3, DVec3, Vec3};
 use crate::world::Normals;
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
@@ -24,16 +28,22 @@ use std::time::{Duration, Instant};
 pub(crate) struct Cache {
     smooth: BTreeMap<MeshKey, PerCorner<DVec3>>,
     local: BTreeMap<MeshKey, Arc<LocalMesh>>,
+    slots: BTreeMap<MeshId, Vec<bool>>,
     means: Means,
 }
 
 /// Everything of a frame but its tree and its camera.
 pub(crate) struct Flattened {
-    pub(crate) soup: Soup,
+    /// What the arrays of all that stands are made of.
+    pub(crate) sources: Sources,
+    /// The triangles that stand; `None` where their arrays are there from before.
+    pub(crate) soup: Option<Soup>,
     /// The triangles of each flattened mesh.
     groups: Vec<Range<u32>>,
-    tree_spheres: Vec<SphereItem>,
-    boxes: Vec<Aabb>,
+    /// Spheres of the tree that move.
+    spheres_moving: Vec<SphereItem>,
+    /// Instances that move: which, and their boxes.
+    pub(crate) instances_moving: (Vec<u32>, Vec<Aabb>),
     pub(crate) local: Vec<Arc<Geometry>>,
     pub(crate) instances: Vec<Instance>,
     pub(crate) instance_materials: Vec<MaterialId>,
@@ -46,14 +56,30 @@ pub(crate) struct Flattened {
 }
 
 impl Flattened {
-    /// What the tree is built over.
-    pub(crate) fn primitives(&self) -> Primitives<'_> {
+    /// What stands, of these triangles.
+    pub(crate) fn standing<'a>(&'a self, triangles: &'a [[Vec3; 3]]) -> Primitives<'a> {
         Primitives {
-            triangles: &self.soup.triangles,
+            triangles,
             groups: &self.groups,
-            spheres: &self.tree_spheres,
-            instances: &self.boxes,
+            spheres: &self.sources.spheres,
+            instances: &self.sources.instances.1,
         }
+    }
+
+    /// What moves.
+    pub(crate) fn moving(&self) -> Primitives<'_> {
+        Primitives {
+            spheres: &self.spheres_moving,
+            instances: &self.instances_moving.1,
+            ..Primitives::default()
+        }
+    }
+
+    /// All spheres of the tree, and all boxes of instances, in the scene's order.
+    pub(crate) fn together(&self) -> (Vec<SphereItem>, Vec<Aabb>) {
+        let mut spheres = [&self.sources.spheres[..], &self.spheres_moving].concat();
+        spheres.sort_by_key(|sphere| sphere.prim);
+        (spheres, self.instances.iter().map(bounds).collect())
     }
 }
 
@@ -68,39 +94,61 @@ pub(crate) struct Context<'a> {
     pub(crate) keep: Keep,
 }
 
-/// Flattens a frame.
-pub(crate) fn flatten(items: &Extracted, context: &Context, cache: &mut Cache) -> Flattened {
+/// Flattens a frame. What stands is not touched if `kept` has it.
+pub(crate) fn flatten(
+    items: &Extracted,
+    context: &Context,
+    cache: &mut Cache,
+    kept: Option<&Kept>,
+) -> Flattened {
     let means = std::mem::take(&mut cache.means);
     let mut tables = Tables::new(context.store, context.fresnel, means);
     let mut lights = Collector::default();
-    let (spheres, tree_spheres) = spheres::flatten(
+    let (spheres, [mut standing, mut moving]) = spheres::flatten(
         &items.spheres,
         &context.rebase,
         &mut tables,
         context.keep.uvs,
     );
+    if context.accel != Accel::Bvh {
+        // What has no tree stands as a whole, or is made anew.
+        standing.append(&mut moving);
+        standing.sort_by_key(|sphere| sphere.prim);
+    }
     lights.spheres(&spheres, &tables.materials);
     let mut flattener = Flattener {
         context,
         cache,
         tables,
         lights,
-        soup: Soup::default(),
         groups: Vec::new(),
         shared: Shared::default(),
         local_trees: Duration::ZERO,
     };
-    flattener.meshes(&items.meshes);
+    let placed = flattener.place(&items.meshes);
+    let (sources, instances_moving) = flattener.sources(&items.meshes, &placed, standing);
+    let world = kept.and_then(|kept| kept.world(&sources));
+    let soup = world
+        .is_none()
+        .then(|| flattener.soup(&items.meshes, &placed, sources.keep));
+    let vertices = |prim: usize| match (&soup, world) {
+        (Some(soup), _) => soup.triangles[prim],
+        (None, Some(world)) => triangle(&world.triangles, prim),
+        // One of both is there.
+        (None, None) => [Vec3::NAN; 3],
+    };
+    flattener.shine(&items.meshes, &placed, vertices);
     for light in &items.lights {
         flattener.lights.punctual(light, &context.rebase);
     }
     let Flattener { tables, shared, .. } = flattener;
     flattener.cache.means = tables.means;
     Flattened {
-        soup: flattener.soup,
+        sources,
+        soup,
         groups: flattener.groups,
-        tree_spheres,
-        boxes: shared.instances.iter().map(bounds).collect(),
+        spheres_moving: moving,
+        instances_moving,
         local: shared.geometries,
         instances: shared.instances,
         instance_materials: shared.materials,
@@ -123,7 +171,6 @@ struct Flattener<'a> {
     cache: &'a mut Cache,
     tables: Tables<'a>,
     lights: Collector,
-    soup: Soup,
     groups: Vec<Range<u32>>,
     shared: Shared,
     local_trees: Duration,
@@ -138,103 +185,213 @@ struct Shared {
     materials: Vec<MaterialId>,
 }
 
-/// How a mesh enters the scene.
-enum Way {
-    Flat,
-    Instance(Arc<LocalMesh>, [DAffine3; 2]),
+/// How a mesh entered the scene, with the materials of its slots.
+struct Placed {
+    way: Way,
+    slots: Vec<MaterialId>,
 }
 
+enum Way {
+    /// As triangles of the world, from this one on.
+    Flat(u32),
+    /// As this instance.
+    Instance(u32, Arc<LocalMesh>),
+}
+
+/// What an instance is made of.
+struct Seed<'a> {
+    item: &'a MeshItem,
+    local: Arc<LocalMesh>,
+    maps: [DAffine3; 2],
+    geometry: u32,
+    materials: u32,
+}
+
+impl Seed<'_> {
+    fn instance(&self) -> Instance {
+        instance(
+            &self.local,
+            self.item,
+            self.maps,
+            self.geometry,
+            self.materials,
+        )
+    }
+}
+
+/// Instances that one thread makes at a time: some tenths of a millisecond of work.
+const INSTANCES: usize = 256;
+
 impl Flattener<'_> {
-    fn meshes(&mut self, items: &[MeshItem]) {
+    /// Finds every mesh its way, its materials, and, if it is an instance, its place.
+    fn place<'i>(&mut self, items: &'i [MeshItem]) -> Vec<Placed> {
         let mut uses: BTreeMap<MeshKey, u32> = BTreeMap::new();
         for item in items {
             *uses.entry(item.key()).or_default() += 1;
         }
-        let ways: Vec<Way> = items
-            .iter()
-            .map(|item| self.way(item, item.moves || uses[&item.key()] > 1))
-            .collect();
-        let smooth = items.iter().zip(&ways).any(|(item, way)| {
-            matches!(way, Way::Flat) && self.cache.normals(item, self.context.store).is_some()
-        });
-        for (item, way) in items.iter().zip(ways) {
-            match way {
-                Way::Flat => self.flat(item, smooth),
-                Way::Instance(local, maps) => self.instance(item, &local, maps),
-            }
-        }
+        let mut triangles = 0;
+        let mut seeds = Vec::new();
+        let place = |item: &'i MeshItem| {
+            let shared = item.look.moves || uses[&item.key()] > 1;
+            let instanced = shared.then(|| self.maps(item)).flatten();
+            let mesh = self.context.store.mesh(item.mesh);
+            let used = self.cache.slots.entry(item.mesh);
+            let used = used.or_insert_with(|| used_slots(mesh));
+            let slots = self.tables.resolve_slots(&item.look, mesh, used);
+            let way = match instanced {
+                Some((local, maps)) => {
+                    seeds.push(self.seed(item, local.clone(), maps, &slots));
+                    Way::Instance(seeds.len() as u32 - 1, local)
+                }
+                None => {
+                    let first = triangles;
+                    triangles += mesh.triangle_count() as u32;
+                    self.groups.push(first..triangles);
+                    Way::Flat(first)
+                }
+            };
+            Placed { way, slots }
+        };
+        let placed = items.iter().map(place).collect();
+        let instances = seeds.par_iter().with_min_len(INSTANCES);
+        self.shared.instances = instances.map(Seed::instance).collect();
+        placed
     }
 
-    /// A mesh that moves or repeats is instanced, unless its map has no way back in f32.
-    fn way(&mut self, item: &MeshItem, shared: bool) -> Way {
-        if !shared {
-            return Way::Flat;
-        }
+    /// The local geometry of a mesh that moves or repeats, and its maps; `None` if these have no way back in f32, so that it
+    /// must be flattened.
+    fn maps(&mut self, item: &MeshItem) -> Option<(Arc<LocalMesh>, [DAffine3; 2])> {
         let start = Instant::now();
         let local = self.cache.local(item, self.context);
         self.local_trees += start.elapsed();
-        match maps(&local.rebase, item, &self.context.rebase) {
-            Some(maps) => Way::Instance(local, maps),
-            None => Way::Flat,
-        }
+        let maps = maps(&local.rebase, item, &self.context.rebase)?;
+        Some((local, maps))
     }
 
-    fn flat(&mut self, item: &MeshItem, smooth: bool) {
-        let mesh = self.context.store.mesh(item.mesh);
-        let slots = self.tables.resolve_slots(&item.look, mesh);
-        let normals = self.cache.normals(item, self.context.store);
-        let part = Part {
-            mesh,
-            normals,
-            to: to_scene(&item.look.pose, &self.context.rebase),
-            keep: Keep {
-                normals: smooth,
-                ..self.context.keep
-            },
-        };
-        let material = |prim| slots[slot(mesh, prim)];
-        let first = self.soup.triangles.len();
-        self.soup
-            .append(&part, Some(item.look.object), |prim| material(prim).0);
-        self.groups
-            .push(first as u32..self.soup.triangles.len() as u32);
-        for (prim, v) in (0..).zip(&self.soup.triangles[first..]) {
-            let place = LightPlace {
-                prim: first as u32 + prim,
-                instance: None,
-                mirrored: false,
-            };
-            self.lights
-                .triangle(*v, place, material(prim), &self.tables.materials);
-        }
-    }
-
-    fn instance(&mut self, item: &MeshItem, local: &LocalMesh, maps: [DAffine3; 2]) {
-        let mesh = self.context.store.mesh(item.mesh);
-        let slots = self.tables.resolve_slots(&item.look, mesh);
+    /// What the next instance is made of, with its places in the tables.
+    fn seed<'i>(
+        &mut self,
+        item: &'i MeshItem,
+        local: Arc<LocalMesh>,
+        maps: [DAffine3; 2],
+        slots: &[MaterialId],
+    ) -> Seed<'i> {
         let shared = &mut self.shared;
         let next = shared.geometries.len() as u32;
         let geometry = *shared.place.entry(item.key()).or_insert(next);
         if geometry == next {
             shared.geometries.push(local.geometry.clone());
         }
-        let instance = instance(local, item, maps, geometry, shared.materials.len() as u32);
-        shared.materials.extend(&slots);
-        shared.instances.push(instance);
-        for prim in 0..mesh.triangle_count() {
-            let material = slots[slot(mesh, prim as u32)];
-            // Most meshes do not shine, and placing their triangles would cost more than all the rest.
-            if self.tables.materials[material.0 as usize].emission == [0.0; 3] {
+        let materials = shared.materials.len() as u32;
+        shared.materials.extend(slots);
+        Seed {
+            item,
+            local,
+            maps,
+            geometry,
+            materials,
+        }
+    }
+
+    /// What stands is made of these; beside it, the instances that move and their boxes.
+    fn sources(
+        &mut self,
+        items: &[MeshItem],
+        placed: &[Placed],
+        spheres: Vec<SphereItem>,
+    ) -> (Sources, (Vec<u32>, Vec<Aabb>)) {
+        let mut flats = Vec::new();
+        let mut keep = self.context.keep;
+        let mut standing = (Vec::new(), Vec::new());
+        let mut moving = (Vec::new(), Vec::new());
+        for (item, Placed { way, slots }) in items.iter().zip(placed) {
+            match way {
+                Way::Flat(_) => {
+                    keep.normals |= self.cache.normals(item, self.context.store).is_some();
+                    flats.push(Flat {
+                        key: item.key(),
+                        pose: item.look.pose,
+                        object: item.look.object,
+                        slots: slots.clone(),
+                    });
+                }
+                Way::Instance(index, _) => {
+                    let apart = item.look.moves && self.context.accel == Accel::Bvh;
+                    let (ids, boxes) = if apart { &mut moving } else { &mut standing };
+                    ids.push(*index);
+                    boxes.push(bounds(&self.shared.instances[*index as usize]));
+                }
+            }
+        }
+        let sources = Sources {
+            flats,
+            keep,
+            spheres,
+            instances: standing,
+        };
+        (sources, moving)
+    }
+
+    /// The triangles of flattened meshes.
+    fn soup(&mut self, items: &[MeshItem], placed: &[Placed], keep: Keep) -> Soup {
+        let mut soup = Soup::default();
+        for (item, Placed { way, slots }) in items.iter().zip(placed) {
+            let Way::Flat(_) = way else {
+                continue;
+            };
+            let mesh = self.context.store.mesh(item.mesh);
+            let part = Part {
+                mesh,
+                normals: self.cache.normals(item, self.context.store),
+                to: to_scene(&item.look.pose, &self.context.rebase),
+                keep,
+            };
+            let material = |prim| slots[slot(mesh, prim)].0;
+            soup.append(&part, Some(item.look.object), material);
+        }
+        soup
+    }
+
+    /// Adds the triangles that shine; `flat` gives the vertices of one of the world.
+    fn shine(&mut self, items: &[MeshItem], placed: &[Placed], flat: impl Fn(usize) -> [Vec3; 3]) {
+        let emission = |id: MaterialId, of: &Tables| of.materials[id.0 as usize].emission;
+        for (item, Placed { way, slots }) in items.iter().zip(placed) {
+            // Most meshes do not shine, and looking at their triangles would cost more than all the rest.
+            if slots
+                .iter()
+                .all(|&id| emission(id, &self.tables) == [0.0; 3])
+            {
                 continue;
             }
-            let v = lights::placed(local.triangle(prim), &instance);
-            let place = LightPlace {
-                prim: prim as u32,
-                instance: Some(self.shared.instances.len() as u32 - 1),
-                mirrored: instance.mirrored,
-            };
-            self.lights
-                .triangle(v, place, material, &self.tables.materials);
+            let mesh = self.context.store.mesh(item.mesh);
+            for prim in 0..mesh.triangle_count() {
+                let material = slots[slot(mesh, prim as u32)];
+                if emission(material, &self.tables) == [0.0; 3] {
+                    continue;
+                }
+                let (v, place) = match way {
+                    Way::Flat(first) => {
+                        let place = LightPlace {
+                            prim: first + prim as u32,
+                            instance: None,
+                            mirrored: false,
+                        };
+                        (flat(place.prim as usize), place)
+                    }
+                    Way::Instance(index, local) => {
+                        let instance = &self.shared.instances[*index as usize];
+                        let place = LightPlace {
+                            prim: prim as u32,
+                            instance: Some(*index),
+                            mirrored: instance.mirrored,
+                        };
+                        let v = triangle(&local.geometry.triangles, prim);
+                        (lights::placed(v, instance), place)
+                    }
+                };
+                self.lights
+                    .triangle(v, place, material, &self.tables.materials);
+            }
         }
     }
 }

@@ -3,7 +3,8 @@
 
 use super::extract::MeshItem;
 use super::meshes::{LocalMesh, mirrors};
-use super::rebase::{Extent, local_to_scene, round_down, round_up};
+use super::rebase::{local_to_scene, round_down, round_up};
+use super::support::extent;
 use crate::flat::{Instance, Rebase};
 use crate::math::{Aabb, DAffine3, DVec3, Vec3};
 
@@ -37,7 +38,7 @@ pub(crate) fn instance(
     geometry: u32,
     materials: u32,
 ) -> Instance {
-    let bounds = bounds(&local.points, &to_world, &to_local);
+    let bounds = bounds(local, &to_world, &to_local);
     Instance {
         to_world: rows(&to_world),
         to_local: rows(&to_local),
@@ -55,17 +56,10 @@ pub(crate) fn instance(
 /// and any point along it reach local space with an error of at most γ (|A| R + |a|), which is |M| times that in the
 /// scene; a hit comes back with an error of at most γ (|M||p| + |m|). Each is taken twice for the ray's origin and its
 /// direction.
-fn bounds(points: &[Vec3], to_world: &DAffine3, to_local: &DAffine3) -> Aabb {
-    let mut extent = Extent::EMPTY;
-    let mut farthest = DVec3::ZERO;
-    for p in points {
-        let p = p.as_dvec3();
-        extent.add(to_world.transform_point3(p));
-        farthest = farthest.max(p.abs());
-    }
-    if points.is_empty() {
+fn bounds(local: &LocalMesh, to_world: &DAffine3, to_local: &DAffine3) -> Aabb {
+    let Some(extent) = extent(&local.geometry, to_world) else {
         return Aabb::EMPTY;
-    }
+    };
     let reach = extent
         .min
         .abs()
@@ -73,7 +67,7 @@ fn bounds(points: &[Vec3], to_world: &DAffine3, to_local: &DAffine3) -> Aabb {
         .max(DVec3::splat(REACH));
     let (m, a) = (to_world.matrix3.abs(), to_local.matrix3.abs());
     let there = m * (a * reach + to_local.translation.abs());
-    let back = m * farthest + to_world.translation.abs();
+    let back = m * local.farthest + to_world.translation.abs();
     let slack = 2.0 * GAMMA * (there + back);
     let (min, max) = (extent.min - slack, extent.max + slack);
     Aabb {

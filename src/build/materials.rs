@@ -2,7 +2,6 @@
 
 use super::extract::Look;
 use super::fresnel::internal_reflectance;
-use super::meshes::used_slots;
 use crate::asset::{self, AlphaMode, AssetStore, Mesh, MeshMaterial, TextureId, TextureUse};
 use crate::flat::{
     self, ColorSource, Coverage, FilterMode, Fresnel, MaterialId, Opacity, Scatter, WrapMode,
@@ -93,9 +92,13 @@ impl<'a> Tables<'a> {
         })
     }
 
-    /// The material of every slot of a mesh (see [`slot`](super::meshes::slot)); one that no triangle uses is given any.
-    pub(crate) fn resolve_slots(&mut self, look: &Look, mesh: &Mesh) -> Vec<MaterialId> {
-        let used = used_slots(mesh);
+    /// The material of every slot of a mesh (see [`slot`](super::meshes::slot)); one that is not in `used` is given any.
+    pub(crate) fn resolve_slots(
+        &mut self,
+        look: &Look,
+        mesh: &Mesh,
+        used: &[bool],
+    ) -> Vec<MaterialId> {
         (0..used.len())
             .map(|slot| {
                 if used[slot] {

@@ -57,7 +57,7 @@ pub(crate) struct Part<'a> {
 }
 
 /// Which cold arrays something requires.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Keep {
     pub(crate) normals: bool,
     pub(crate) uvs: bool,
@@ -151,8 +151,8 @@ pub(crate) struct LocalMesh {
     pub(crate) geometry: std::sync::Arc<flat::Geometry>,
     /// From the mesh's own space to local units.
     pub(crate) rebase: Rebase,
-    /// Vertices of `geometry`, each once: what boxes of instances are made of.
-    pub(crate) points: Vec<Vec3>,
+    /// The largest absolute coordinates of its vertices.
+    pub(crate) farthest: DVec3,
 }
 
 impl LocalMesh {
@@ -174,13 +174,8 @@ impl LocalMesh {
             },
         };
         soup.append(&part, None, |prim| slot(mesh, prim) as u32);
-        let mut used = vec![false; mesh.positions.len()];
-        for corner in &mesh.corners {
-            used[*corner as usize] = true;
-        }
-        let used = mesh.positions.iter().zip(used).filter(|(_, used)| *used);
-        let points = used.map(|(p, _)| part.to.transform_point3(*p).as_vec3());
-        let points = points.collect();
+        let corners = soup.triangles.iter().flatten();
+        let farthest = corners.fold(DVec3::ZERO, |far, p| far.max(p.as_dvec3().abs()));
         let primitives = super::bvh::Primitives {
             triangles: &soup.triangles,
             ..Default::default()
@@ -193,19 +188,18 @@ impl LocalMesh {
                 shading: soup.shading,
             }),
             rebase,
-            points,
+            farthest,
         }
     }
+}
 
-    /// The vertices of a triangle, as rays see them.
-    pub(crate) fn triangle(&self, prim: usize) -> [Vec3; 3] {
-        let triangles = &self.geometry.triangles;
-        let place = triangles.place[prim] as usize;
-        let (block, lane) = (&triangles.blocks[place / flat::BLOCK], place % flat::BLOCK);
-        block
-            .v
-            .map(|axes| Vec3::from_array(axes.map(|lanes| lanes[lane])))
-    }
+/// The vertices of a triangle, as rays see them.
+pub(crate) fn triangle(triangles: &flat::Triangles, prim: usize) -> [Vec3; 3] {
+    let place = triangles.place[prim] as usize;
+    let (block, lane) = (&triangles.blocks[place / flat::BLOCK], place % flat::BLOCK);
+    block
+        .v
+        .map(|axes| Vec3::from_array(axes.map(|lanes| lanes[lane])))
 }
 
 /// The material slot of a triangle: the file's material, or the one behind the last for triangles without.

@@ -2,7 +2,10 @@
 //!
 //! Enters: `&World`, read-only by type, and the store. Leaves: arrays and ids; names, paths, entities and f64
 //! transforms end here. A frame depends on the scene and the world's poses alone, never on the frame before: what is
-//! kept between frames (the rebase, local geometries, smoothed normals) is a function of the scene.
+//! kept between frames (the rebase, local geometries, smoothed normals, the tree of what stands) is a function of the
+//! scene, or known again by what it is made of.
+//!
+//! Nothing deforms: what moves is moved as a whole, so that no tree is ever refitted.
 //!
 //! Deliberately absent: files, pixels, and any error: what cannot be built was refused when it was read.
 
@@ -13,24 +16,29 @@ mod extract;
 mod flatten;
 mod fresnel;
 mod instances;
+mod kept;
 mod lights;
 mod materials;
 mod meshes;
 mod needs;
 mod rebase;
 mod spheres;
+mod support;
 
 pub use bvh::{Accel, Quality};
 pub use bytes::{BufferBytes, buffer_bytes};
 
 use crate::asset::AssetStore;
 use crate::flat::{FlatScene, Fresnel, Geometry, PixelFilter, Rebase};
+use crate::math::Vec3;
 use crate::world::{Pose, poses};
+use bvh::{Built, Standing};
 use extract::{Extracted, extract};
-use flatten::{Cache, Context, flatten};
+use flatten::{Cache, Context, Flattened, flatten};
 use hecs::{Entity, World};
+use kept::Kept;
 use materials::{Means, Tables};
-use meshes::Keep;
+use meshes::{Keep, used_slots};
 use std::collections::HashMap;
 use std::time::{Duration, Instant};
 
@@ -56,6 +64,8 @@ pub struct BuildOptions {
 /// What the steps of one build took, and what came out.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BuildTimes {
+    /// Placing what moves: before the build, and told beside it.
+    pub pose: Duration,
     /// World to sorted items.
     pub extract: Duration,
     /// Items to arrays.
@@ -76,6 +86,8 @@ pub struct SceneBuilder {
     /// What is read of meshes.
     keep: Keep,
     cache: Cache,
+    /// What stands still.
+    kept: Option<Kept>,
 }
 
 impl SceneBuilder {
@@ -90,6 +102,7 @@ impl SceneBuilder {
             rebase: rebase::of_scene(&rest, store),
             keep: keep(&rest, store, options.uv_aov),
             cache: Cache::default(),
+            kept: None,
         }
     }
 
@@ -109,12 +122,24 @@ impl SceneBuilder {
             fresnel: self.options.fresnel,
             keep: self.keep,
         };
-        let flat = flatten(&extracted, &context, &mut self.cache);
+        let mut kept = self.kept.take();
+        let mut flat = flatten(&extracted, &context, &mut self.cache, kept.as_ref());
         let flattening = start.elapsed() - extracting - flat.local_trees;
 
         let start = Instant::now();
-        let BuildOptions { accel, quality, .. } = self.options;
-        let built = bvh::build_with(&flat.primitives(), accel, quality);
+        let soup = flat.soup.take();
+        let again = kept
+            .as_mut()
+            .filter(|_| soup.is_none())
+            .and_then(Kept::take);
+        let (standing, shading) = match again {
+            Some((built, standing, shading)) => ((built, standing), shading),
+            None => {
+                let soup = soup.unwrap_or_default();
+                (self.stand(&flat, &soup.triangles), soup.shading)
+            }
+        };
+        let built = self.tree(&flat, standing);
         let tree = start.elapsed() + flat.local_trees;
 
         let (pose, camera) = &extracted.camera;
@@ -123,7 +148,7 @@ impl SceneBuilder {
             world: Geometry {
                 triangles: built.triangles,
                 bvh: built.bvh,
-                shading: flat.soup.shading,
+                shading,
             },
             local: flat.local,
             instances: flat.instances,
@@ -140,6 +165,7 @@ impl SceneBuilder {
         scene.spheres.blocks = built.sphere_blocks;
         scene.needs = needs::needs(&scene);
         let times = BuildTimes {
+            pose: Duration::ZERO,
             extract: extracting,
             flatten: flattening,
             bvh: tree,
@@ -147,6 +173,47 @@ impl SceneBuilder {
             bytes: buffer_bytes(&scene).iter().map(|b| b.bytes).sum(),
         };
         (scene, times)
+    }
+
+    /// The tree over what stands.
+    fn stand(&self, flat: &Flattened, triangles: &[[Vec3; 3]]) -> (Built, Standing) {
+        let BuildOptions { accel, quality, .. } = self.options;
+        let mut built = bvh::build_with(&flat.standing(triangles), accel, quality);
+        let (ids, _) = &flat.sources.instances;
+        for index in &mut built.bvh.instance_order {
+            *index = ids[*index as usize];
+        }
+        let standing = Standing::of(&built);
+        (built, standing)
+    }
+
+    /// The tree of a frame, over what stands and what moves.
+    fn tree(&mut self, flat: &Flattened, (built, standing): (Built, Standing)) -> Built {
+        let (ids, _) = &flat.instances_moving;
+        match kept::above(built, &standing, &flat.moving(), ids) {
+            Ok(built) => {
+                self.kept = Some(Kept::new(flat.sources.clone(), standing));
+                built
+            }
+            Err(standing) => {
+                let (spheres, instances) = flat.together();
+                let all = bvh::Primitives {
+                    triangles: &kept::vertices(&standing.triangles),
+                    spheres: &spheres,
+                    instances: &instances,
+                    ..Default::default()
+                };
+                bvh::build_with(&all, self.options.accel, self.options.quality)
+            }
+        }
+    }
+
+    /// Takes a frame apart that this builder built last, for what stands in it: the next frame is built sooner, and no
+    /// different.
+    pub(crate) fn give_back(&mut self, scene: FlatScene) {
+        if let Some(kept) = &mut self.kept {
+            kept.give_back(scene);
+        }
     }
 
     /// How scene units come about.
@@ -163,7 +230,8 @@ fn keep(scene: &Extracted, store: &AssetStore, uv_aov: bool) -> Keep {
         tables.resolve(&item.look, None);
     }
     for item in &scene.meshes {
-        tables.resolve_slots(&item.look, store.mesh(item.mesh));
+        let mesh = store.mesh(item.mesh);
+        tables.resolve_slots(&item.look, mesh, &used_slots(mesh));
     }
     let reads = |set| tables.textures.iter().any(|t| t.uv_set == set);
     Keep {

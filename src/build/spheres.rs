@@ -10,15 +10,17 @@ use crate::math::DMat3;
 /// Up to this many spheres are tested one after the other, two blocks of eight: as fast as walking a tree over them.
 const LOOP_ALL: usize = 16;
 
-/// Flattens all spheres; those that belong in the tree come back beside them.
+/// Flattens all spheres; those that belong in the tree come back beside them: first those that stand still, then those that
+/// move.
 pub(crate) fn flatten(
     items: &[SphereItem],
     rebase: &Rebase,
     tables: &mut Tables,
     rotations: bool,
-) -> (Spheres, Vec<Item>) {
+) -> (Spheres, [Vec<Item>; 2]) {
     let mut spheres = Spheres::default();
-    let (mut looped, mut in_tree) = (Vec::new(), Vec::new());
+    let mut looped = Vec::new();
+    let mut in_tree = [Vec::new(), Vec::new()];
     for (prim, item) in items.iter().enumerate() {
         let pose = &item.look.pose;
         let center = to_scene(pose, rebase).translation.to_array();
@@ -42,7 +44,7 @@ pub(crate) fn flatten(
         let list = if wall || items.len() <= LOOP_ALL {
             &mut looped
         } else {
-            &mut in_tree
+            &mut in_tree[usize::from(item.look.moves)]
         };
         list.push(placed);
     }

@@ -140,7 +140,8 @@ impl LinearNode {
 /// A tree. Traversal starts at the root *child*, so that a tree may also be one leaf (`--accel brute`) or nothing.
 #[derive(Clone, Debug)]
 pub struct Bvh {
-    /// Inner nodes; a child has a larger index than its parent.
+    /// Inner nodes. Children lie side by side and have larger indices than their parent, except that of a scene in which
+    /// things move, the nodes of all that stands lie before the others.
     pub nodes: Vec<LinearNode>,
     /// The root; an inner one where there are no nodes is the empty tree.
     pub root: Child,

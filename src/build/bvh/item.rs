@@ -17,7 +17,9 @@ impl Kinds {
     pub(super) const INSTANCE: Kinds = Kinds(1 << 10);
     /// Triangles that are blocks already, and a node over these if there are several.
     pub(super) const READY: Kinds = Kinds(1 << 11);
-    const ALL: u32 = 15 << 8;
+    /// All that stands still, whose tree is there already.
+    pub(super) const STANDING: Kinds = Kinds(1 << 12);
+    const ALL: u32 = 31 << 8;
 
     /// Whether there is more than one.
     pub(super) fn mixed(self) -> bool {

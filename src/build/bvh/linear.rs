@@ -11,6 +11,7 @@
 use super::blocks::{Ready, sphere_block, triangle_block};
 use super::item::{Item, Kinds};
 use super::split::{self, NODE_COST};
+use super::standing::{Below, Standing};
 use super::tree::{BuildNode, Child, Grove, Shape};
 use super::{Built, CHUNK, Primitives, SPHERES, SphereItem};
 use crate::flat::bvh::{Child as To, WIDTH, kind};
@@ -28,13 +29,14 @@ pub(super) fn linearize(
     items: &[Item],
     root: Option<(Child, Grove)>,
     ready: Ready,
+    below: Option<&Below>,
 ) -> Built {
     let nothing = Child {
         bounds: Aabb::EMPTY,
         shape: Shape::Leaf(0..0),
     };
     let (root, grove) = root.unwrap_or((nothing, Grove::default()));
-    let mut order = Order::new(items, &ready, half_area(&root.bounds));
+    let mut order = Order::new(items, &ready, half_area(&root.bounds), below);
     let to = order.all(&grove, &root);
     let blocks = order.blocks(p);
     Built {
@@ -63,6 +65,10 @@ fn half_area(b: &Aabb) -> f32 {
 struct Order<'a> {
     items: &'a [Item],
     ready: &'a Ready,
+    /// What stands still, whose nodes and blocks lie before these.
+    below: Option<&'a Below>,
+    /// Which node is its root.
+    copy: Option<usize>,
     /// Half the area of the root's box.
     area: f32,
     nodes: Vec<Placed<'a>>,
@@ -74,6 +80,14 @@ struct Order<'a> {
     instances: Vec<u32>,
     depth: u32,
     cost: f32,
+}
+
+/// How much of each array is there before.
+#[derive(Default)]
+struct Before {
+    nodes: usize,
+    spheres: usize,
+    instances: usize,
 }
 
 /// A node in its place.
@@ -88,10 +102,12 @@ struct Placed<'a> {
 }
 
 impl<'a> Order<'a> {
-    fn new(items: &'a [Item], ready: &'a Ready, area: f32) -> Order<'a> {
+    fn new(items: &'a [Item], ready: &'a Ready, area: f32, below: Option<&'a Below>) -> Order<'a> {
         Order {
             items,
             ready,
+            below,
+            copy: None,
             area,
             nodes: pages::with_capacity((items.len() + ready.children.len()) / BLOCK),
             triangles: pages::with_capacity(items.len() / (BLOCK / 2)),
@@ -139,11 +155,14 @@ impl<'a> Order<'a> {
         let (grove, index) = match &child.shape {
             Shape::Leaf(range) => {
                 let items = &self.items[to_usize(range)];
-                if let [item] = items
-                    && item.kind() == Kinds::READY
-                {
-                    let child = &self.ready.children[item.index() as usize];
-                    return self.child(&self.ready.grove, child, depth);
+                if let [item] = items {
+                    if item.kind() == Kinds::READY {
+                        let child = &self.ready.children[item.index() as usize];
+                        return self.child(&self.ready.grove, child, depth);
+                    }
+                    if let (Kinds::STANDING, Some(below)) = (item.kind(), self.below) {
+                        return self.standing(below, grove, depth, share);
+                    }
                 }
                 let units = items.iter().map(Item::units).sum();
                 self.cost += share * split::blocks(units);
@@ -164,20 +183,56 @@ impl<'a> Order<'a> {
             depth,
             to: [To::inner(0); WIDTH],
         });
-        To::inner(self.nodes.len() as u32 - 1)
+        To::inner((self.before().nodes + self.nodes.len()) as u32 - 1)
+    }
+
+    /// Places the root of what stands; returns where.
+    fn standing(&mut self, below: &Below, grove: &'a Grove, depth: u32, share: f32) -> To {
+        let Standing {
+            root,
+            depth: levels,
+            cost,
+            ..
+        } = below.standing;
+        self.cost += share * cost;
+        if root.kind() != kind::INNER {
+            return root;
+        }
+        self.depth = self.depth.max(depth - 1 + levels);
+        self.copy = Some(self.nodes.len());
+        self.nodes.push(Placed {
+            grove,
+            node: const { &[const { None }; WIDTH] },
+            depth,
+            to: [To::inner(0); WIDTH],
+        });
+        To::inner((self.before().nodes + self.nodes.len()) as u32 - 1)
+    }
+
+    /// How much lies before what is placed here.
+    fn before(&self) -> Before {
+        match self.below {
+            None => Before::default(),
+            Some(Below { standing, .. }) => Before {
+                nodes: standing.nodes,
+                spheres: standing.sphere_blocks,
+                instances: standing.instances,
+            },
+        }
     }
 
     /// Places the blocks of a leaf; returns where.
     fn leaf(&mut self, range: Range<u32>) -> To {
         let what = self.items.get(range.start as usize).map(Item::kind);
+        let standing = self.before().spheres;
         let (list, before, lanes, tag) = match what {
             None => return To::inner(0),
             Some(Kinds::INSTANCE) => {
-                let first = self.instances.len() as u32;
+                let first = (self.before().instances + self.instances.len()) as u32;
                 self.instances.extend(range.clone());
                 return To::run(kind::INSTANCES, first, range.len() as u32);
             }
-            Some(Kinds::SPHERE) => (&mut self.spheres, 0, SPHERES, kind::SPHERES),
+            Some(Kinds::SPHERE) => (&mut self.spheres, standing, SPHERES, kind::SPHERES),
             Some(_) => (
                 &mut self.triangles,
                 self.ready.blocks.len(),
@@ -210,6 +265,9 @@ impl<'a> Order<'a> {
         let mut nodes = pages::with_capacity(self.nodes.len());
         let placed = self.nodes.par_iter().with_min_len(CHUNK / WIDTH);
         placed.map(Placed::linear).collect_into_vec(&mut nodes);
+        if let (Some(at), Some(below)) = (self.copy, self.below) {
+            nodes[at] = below.node;
+        }
         nodes
     }
 

@@ -15,12 +15,14 @@ mod linear;
 mod morton;
 mod partition;
 mod split;
+mod standing;
 mod tree;
 pub mod validate;
 
 use crate::flat::{BLOCK, Bvh, SphereBlock, Triangles};
 use crate::math::{Aabb, Vec3};
 use blocks::Ready;
+pub use standing::Standing;
 use std::ops::Range;
 
 /// Lanes of a [`SphereBlock`].
@@ -125,7 +127,7 @@ pub fn build_with(p: &Primitives, accel: Accel, quality: Quality) -> Built {
             tree::over_kinds(&items, &all.collect::<Vec<_>>())
         }
     };
-    linear::linearize(p, &items, root, ready)
+    linear::linearize(p, &items, root, ready, None)
 }
 
 /// Spheres in the order given, eight to a block, the last one padded.

@@ -1,0 +1,171 @@
+//! What it costs to come from one frame to the next, without tracing: a mesh that turns, of 10,000 to 4,000,000 triangles;
+//! one that stands while a small one turns; and 10,000 instances of one, all turning.
+//!
+//! `cargo bench --bench update`, or `-- 1` for the meshes of up to so many million triangles. Meshes are written to a
+//! temporary folder and read from there. Medians of 48 frames, in microseconds; the first frame, which builds the trees,
+//! in milliseconds.
+
+use luxel::asset::Loader;
+use luxel::build::{BuildTimes, buffer_bytes};
+use luxel::math::sin_cos_deg;
+use luxel::render::{Renderer, Settings};
+use luxel::{scene, world};
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+const FRAMES: u32 = 48;
+
+/// Steps around a ball, and half as many from pole to pole: 10 k, 100 k, 1 M and 4 M triangles.
+const BALLS: [u32; 4] = [102, 318, 1002, 2002];
+
+/// Instances of one mesh, and steps around it.
+const CROWD: u32 = 10_000;
+const MEMBER: u32 = 60;
+
+fn main() {
+    let most = std::env::args()
+        .filter_map(|a| a.parse::<f64>().ok())
+        .next();
+    let most = 1e6 * most.unwrap_or(f64::INFINITY);
+    let folder = std::env::temp_dir().join(format!("luxel-update-{}", std::process::id()));
+    fs::create_dir_all(&folder).expect("a temporary folder");
+    println!("medians of {FRAMES} frames in µs; first frame in ms\n");
+    println!(
+        "{:22} {:>9} {:>8} {:>7} {:>8} {:>8} {:>7} {:>8}",
+        "scene", "triangles", "first", "pose", "extract", "flatten", "tree", "all"
+    );
+    for steps in BALLS
+        .into_iter()
+        .filter(|&n| f64::from(triangles(n)) <= most)
+    {
+        fs::write(folder.join("ball.obj"), ball(steps)).expect("writable");
+        fs::write(folder.join("small.obj"), ball(20)).expect("writable");
+        let turns = "spin: (axis: (1, 2, 3), deg_per_s: 90)";
+        let turning = format!("(shape: Mesh(\"ball.obj\"), {turns}),");
+        row(
+            "it turns",
+            triangles(steps),
+            &mut renderer(&folder, &turning),
+        );
+        let standing = format!(
+            "(shape: Mesh(\"ball.obj\")), (shape: Mesh(\"small.obj\"), transform: (translate: (3, 0, 0)), {turns}),"
+        );
+        row(
+            "it stands, one turns",
+            triangles(steps),
+            &mut renderer(&folder, &standing),
+        );
+    }
+    crowd(&folder);
+    fs::remove_dir_all(&folder).expect("ours");
+}
+
+/// Instances without number, all turning, and what each costs.
+fn crowd(folder: &Path) {
+    fs::write(folder.join("ball.obj"), ball(MEMBER)).expect("writable");
+    let place = |i: u32| (3 * (i % 100), 3 * (i / 100));
+    let member = |i: u32| {
+        let (x, z) = place(i);
+        format!(
+            "(shape: Mesh(\"ball.obj\"), transform: (translate: ({x}, 0, {z})), spin: (axis: (1, 2, {i}), deg_per_s: 90)),\n"
+        )
+    };
+    let before = memory();
+    let mut one = renderer(folder, &member(0));
+    let (alone, _) = one.build(0);
+    let between = memory();
+    let mut all = renderer(folder, &(0..CROWD).map(member).collect::<String>());
+    row("instances, all turning", triangles(MEMBER), &mut all);
+    let (scene, _) = all.build(1);
+    let bytes = |scene| buffer_bytes(scene).iter().map(|b| b.bytes).sum::<usize>();
+    let each = (bytes(&scene) - bytes(&alone)) / CROWD as usize;
+    println!("\n{CROWD} instances: {each} bytes each in the flat scene");
+    if let (Some(before), Some(between), Some(after)) = (before, between, memory()) {
+        let process = (after - between).saturating_sub(between - before);
+        println!(
+            "and {} bytes each of the process",
+            process / u64::from(CROWD)
+        );
+    }
+}
+
+/// Prints what frames cost.
+fn row(name: &str, triangles: u32, renderer: &mut Renderer) {
+    let first = Instant::now();
+    renderer.update(0);
+    let first = first.elapsed();
+    let mut frames = Vec::new();
+    for frame in 1..=FRAMES {
+        let start = Instant::now();
+        let times = renderer.update(frame);
+        frames.push((times, start.elapsed()));
+    }
+    let median = |of: &dyn Fn(&(BuildTimes, Duration)) -> Duration| {
+        let mut all: Vec<Duration> = frames.iter().map(of).collect();
+        all.sort_unstable();
+        all[all.len() / 2].as_secs_f64() * 1e6
+    };
+    println!(
+        "{name:22} {triangles:>9} {:>8.1} {:>7.1} {:>8.1} {:>8.1} {:>7.1} {:>8.1}",
+        first.as_secs_f64() * 1e3,
+        median(&|f| f.0.pose),
+        median(&|f| f.0.extract),
+        median(&|f| f.0.flatten),
+        median(&|f| f.0.bvh),
+        median(&|f| f.1),
+    );
+}
+
+fn renderer(folder: &Path, entities: &str) -> Renderer {
+    let text = format!(
+        "Scene(version: 1, camera: (at: (0, 0, 9), look_at: (0, 0, 0)), render: (size: (8, 8), spp: 1), entities: [
+            (shape: Sphere(radius: 1), transform: (translate: (0, 9, 0)), emissive: (radiance: (9, 9, 9))), {entities}])"
+    );
+    let file: PathBuf = folder.join("scene.ron");
+    let (desc, _) = scene::parse(&text, &file).expect("a scene");
+    let spawned = world::spawn(&desc, Loader::new()).expect("a world");
+    let settings = Settings::of_scene(&desc);
+    Renderer::new(&desc, spawned.world, &spawned.assets, settings).expect("threads")
+}
+
+/// Of a ball of so many steps around.
+fn triangles(steps: u32) -> u32 {
+    steps * (steps / 2 - 1) * 2
+}
+
+/// A ball of radius 1 as OBJ text: quads between meridians and parallels, triangles at the poles.
+fn ball(steps: u32) -> String {
+    let rows = steps / 2;
+    let mut text = String::from("v 0 1 0\nv 0 -1 0\n");
+    for j in 1..rows {
+        let (s, c) = sin_cos_deg(180.0 * f64::from(j) / f64::from(rows));
+        for i in 0..steps {
+            let (sin, cos) = sin_cos_deg(360.0 * f64::from(i) / f64::from(steps));
+            // Writing into a String cannot fail, here and below.
+            let _ = writeln!(text, "v {} {c} {}", s * cos, -s * sin);
+        }
+    }
+    let at = |j: u32, i: u32| 3 + (j - 1) * steps + i % steps;
+    for i in 0..steps {
+        let _ = writeln!(text, "f 1 {} {}", at(1, i), at(1, i + 1));
+        let _ = writeln!(text, "f 2 {} {}", at(rows - 1, i + 1), at(rows - 1, i));
+    }
+    for j in 1..rows - 1 {
+        for i in 0..steps {
+            let (a, b) = (at(j, i), at(j, i + 1));
+            let (c, d) = (at(j + 1, i), at(j + 1, i + 1));
+            let _ = writeln!(text, "f {a} {c} {d}\nf {a} {d} {b}");
+        }
+    }
+    text
+}
+
+/// Resident bytes of this process, where the system tells.
+fn memory() -> Option<u64> {
+    let status = fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmRSS:"))?;
+    let kilobytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(1024 * kilobytes)
+}
