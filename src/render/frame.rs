@@ -1,7 +1,7 @@
 //! Frames of one scene.
 
 use super::lost::{self, NonFinite};
-use super::metadata::{metadata, scene_hash};
+use super::metadata::{self, scene_hash};
 use super::passes::{Deadline, Passes};
 use super::pilot::{self, Verdict};
 use super::tiles::{self, Tile};
@@ -12,7 +12,7 @@ use crate::film::{Blocks, Film, Metadata, Planes, Window};
 use crate::flat::{FlatScene, PixelFilter};
 use crate::scene::{ColorDesc, FilterDesc, SceneDesc};
 use crate::trace::{Rect, TileSums, TraceOptions, Tracer};
-use crate::world::pose;
+use crate::world::{Time, pose};
 use hecs::World;
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use std::time::{Duration, Instant};
@@ -38,6 +38,7 @@ pub struct Renderer {
     pool: ThreadPool,
     hash: String,
     fps: f64,
+    filter: PixelFilter,
     settings: Settings,
 }
 
@@ -56,8 +57,10 @@ impl Renderer {
         let pool = ThreadPoolBuilder::new()
             .num_threads(settings.threads.unwrap_or(0))
             .build()?;
+        let options = build_options(desc, &settings);
         Ok(Renderer {
-            builder: SceneBuilder::new(&world, store, build_options(desc, &settings)),
+            filter: options.filter,
+            builder: SceneBuilder::new(&world, store, options),
             world,
             pool,
             hash: scene_hash(desc, store),
@@ -84,15 +87,34 @@ impl Renderer {
         self.world
     }
 
-    /// Poses the world at `frame / fps` seconds and builds what tracing reads. Posing counts as extraction.
+    /// What the image of a frame says about how it was made, if every pixel has all samples. What only one file format
+    /// has, as a PNG its exposure, is the caller's to add.
+    #[must_use]
+    pub fn metadata(&self, frame: u32) -> Metadata {
+        self.metadata_of(frame, self.settings.spp)
+    }
+
+    fn metadata_of(&self, frame: u32, spp: u32) -> Metadata {
+        metadata::metadata(&self.hash, frame, self.filter, &self.settings, spp)
+    }
+
+    /// Poses the world at `frame / fps` seconds and builds what tracing reads.
     pub fn build(&mut self, frame: u32) -> (FlatScene, BuildTimes) {
         let start = Instant::now();
-        pose(&mut self.world, f64::from(frame) / self.fps);
+        pose(&mut self.world, Time::of_frame(frame, self.fps));
         let posing = start.elapsed();
         let (world, builder) = (&self.world, &mut self.builder);
-        let (scene, mut times) = self.pool.install(|| builder.build(world, frame));
-        times.extract += posing;
+        let noise = if self.settings.fixed_noise { 0 } else { frame };
+        let (scene, mut times) = self.pool.install(|| builder.build(world, noise));
+        times.pose = posing;
         (scene, times)
+    }
+
+    /// Builds a frame that nobody looks at: what it costs to come to it from the one before.
+    pub fn update(&mut self, frame: u32) -> BuildTimes {
+        let (scene, times) = self.build(frame);
+        self.builder.give_back(scene);
+        times
     }
 
     /// Renders a frame, or as much of it as [`Settings`] and `control` allow.
@@ -126,9 +148,11 @@ impl Renderer {
     ) -> Rendering {
         let deadline = self.settings.time.map(Deadline::after);
         let (scene, times) = self.build(frame);
-        let (film, non_finite, mut stats) = self.trace(&scene, control, deadline, watch);
+        let (film, non_finite, mut stats) = self.trace(&scene, frame, control, deadline, watch);
+        self.builder.give_back(scene);
         stats.bytes = times.bytes;
         stats.stages = Stages {
+            pose: times.pose,
             extract: times.extract,
             flatten: times.flatten,
             bvh: times.bvh,
@@ -136,7 +160,7 @@ impl Renderer {
         };
         Rendering {
             film,
-            metadata: metadata(&self.hash, &scene, &self.settings, stats.spp),
+            metadata: self.metadata_of(frame, stats.spp),
             stats,
             non_finite,
         }
@@ -145,6 +169,7 @@ impl Renderer {
     fn trace(
         &self,
         scene: &FlatScene,
+        frame: u32,
         control: &Control,
         deadline: Option<Deadline>,
         mut watch: impl FnMut(&[Tile], u32, Duration) + Send,
@@ -183,7 +208,7 @@ impl Renderer {
             stats.closest_rays += tile.sums.rays[0];
             stats.occlusion_rays += tile.sums.rays[1];
         }
-        let non_finite = lost::find(&tiles, scene, &settings.trace);
+        let non_finite = lost::find(&tiles, scene, frame, &settings.trace);
         (assemble(width, height, tiles), non_finite, stats)
     }
 

@@ -22,7 +22,12 @@ pub struct NonFinite {
 
 /// The first [`TileSums::MAX_LOST`] of an image, by row, column and index. Tracing keeps no record of bounces: these few are
 /// traced once more to find theirs.
-pub(super) fn find(tiles: &[Tile], scene: &FlatScene, options: &TraceOptions) -> Vec<NonFinite> {
+pub(super) fn find(
+    tiles: &[Tile],
+    scene: &FlatScene,
+    frame: u32,
+    options: &TraceOptions,
+) -> Vec<NonFinite> {
     let mut all: Vec<(u32, u32, u32)> = tiles
         .iter()
         .flat_map(|Tile { rect, sums, .. }| {
@@ -36,7 +41,7 @@ pub(super) fn find(tiles: &[Tile], scene: &FlatScene, options: &TraceOptions) ->
     all.truncate(TileSums::MAX_LOST);
     all.into_iter()
         .map(|(y, x, sample)| NonFinite {
-            frame: scene.frame,
+            frame,
             pixel: (x, y),
             sample,
             // Replayed to the bit, so that there is such a bounce.

@@ -3,7 +3,7 @@
 use super::Settings;
 use crate::asset::AssetStore;
 use crate::film::Metadata;
-use crate::flat::{FlatScene, PixelFilter};
+use crate::flat::PixelFilter;
 use crate::scene::SceneDesc;
 use crate::trace::{Fresnel, Sampler};
 use sha2::{Digest, Sha256};
@@ -18,21 +18,27 @@ pub(super) fn scene_hash(desc: &SceneDesc, store: &AssetStore) -> String {
     hash.finalize().iter().map(|b| format!("{b:02x}")).collect()
 }
 
-/// The metadata of a rendering of `scene` with `spp` samples in every pixel. What only one file format has, as a PNG
-/// its exposure, is the caller's to add.
-pub(super) fn metadata(hash: &str, scene: &FlatScene, settings: &Settings, spp: u32) -> Metadata {
-    let camera = &scene.camera;
+/// The metadata of a frame with `spp` samples in every pixel. What only one file format has, as a PNG its exposure, is
+/// the caller's to add.
+pub(super) fn metadata(
+    hash: &str,
+    frame: u32,
+    filter: PixelFilter,
+    settings: &Settings,
+    spp: u32,
+) -> Metadata {
+    let (width, height) = settings.size;
     let dials = &settings.trace;
     let switch = |on| if on { "on" } else { "off" };
     let mut metadata = Metadata::default();
     metadata.push("version", env!("CARGO_PKG_VERSION"));
     metadata.push("scene", hash);
-    metadata.push("frame", scene.frame);
-    metadata.push("size", format!("{}x{}", camera.width, camera.height));
+    metadata.push("frame", frame);
+    metadata.push("size", format!("{width}x{height}"));
     metadata.push("spp", spp);
     metadata.push("seed", dials.seed);
     metadata.push("bounces", dials.max_bounces);
-    metadata.push("filter", filter_name(camera.filter));
+    metadata.push("filter", filter_name(filter));
     let sampler = match dials.sampler {
         Sampler::Independent => "independent",
         Sampler::Sobol => "sobol",
@@ -47,6 +53,9 @@ pub(super) fn metadata(hash: &str, scene: &FlatScene, settings: &Settings, spp: 
         Fresnel::Off => "off",
     };
     metadata.push("fresnel", fresnel);
+    if settings.fixed_noise {
+        metadata.push("noise", "fixed");
+    }
     metadata
 }
 

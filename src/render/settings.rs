@@ -25,6 +25,8 @@ pub struct Settings {
     pub accel: Accel,
     /// How well trees are built.
     pub quality: Quality,
+    /// Every frame has the noise of frame 0, for pictures that are compared; else frames share no random number.
+    pub fixed_noise: bool,
     /// Dials of tracing.
     pub trace: TraceOptions,
 }
@@ -45,6 +47,7 @@ impl Settings {
             tile: Settings::DEFAULT_TILE,
             accel: Accel::default(),
             quality: Quality::default(),
+            fixed_noise: false,
             trace: TraceOptions {
                 max_bounces: desc.render.max_bounces,
                 ..TraceOptions::default()

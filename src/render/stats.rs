@@ -5,7 +5,9 @@ use std::time::Duration;
 /// Wall-clock time of each stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Stages {
-    /// Reading the world: pose included.
+    /// Placing what moves.
+    pub pose: Duration,
+    /// Reading the world.
     pub extract: Duration,
     /// World space to flat buffers.
     pub flatten: Duration,

@@ -111,6 +111,7 @@ impl Stage {
             tile: Settings::DEFAULT_TILE,
             accel,
             quality: Quality::Good,
+            fixed_noise: false,
             trace: *options,
         };
         let renderer = Renderer::new(&desc, spawned.world, &spawned.assets, settings);
