@@ -21,6 +21,8 @@ pub(crate) mod code {
     pub(crate) const BUG: u8 = 70;
     /// Input or output failed.
     pub(crate) const IO: u8 = 74;
+    /// Stopped by a signal, with work saved that the same line goes on from (BSD: "try again later").
+    pub(crate) const RESUMABLE: u8 = 75;
     /// Stopped by a signal.
     pub(crate) const STOPPED: u8 = 130;
 }
@@ -130,6 +132,14 @@ impl Failure {
                 format!("cannot start the worker threads: {cause}"),
                 Some("ask for fewer: --threads 1".to_owned()),
             ),
+        }
+    }
+
+    /// Stopped by a signal; the same line goes on.
+    pub(crate) fn resumable() -> Failure {
+        Failure {
+            code: code::RESUMABLE,
+            what: What::Said,
         }
     }
 

@@ -3,6 +3,7 @@
 use super::failure::Failure;
 use super::output::check_writable;
 use super::print_result;
+use super::sequence::numbered;
 use crate::film::{self, Film, GifFrame, Metadata, TICKS_PER_SECOND};
 use crate::render::Rendering;
 use std::ffi::OsStr;
@@ -47,7 +48,7 @@ impl Turn {
 
     /// How long a GIF shows a frame, in its ticks. Where they do not divide the turn, some frames last one longer, so
     /// that the whole takes its time.
-    fn ticks(self, frame: u32) -> u16 {
+    pub(super) fn ticks(self, frame: u32) -> u16 {
         let until = |frame: u32| {
             let share = f64::from(frame) / f64::from(self.frames);
             (TICKS_PER_SECOND * self.seconds * share).round()
@@ -107,7 +108,7 @@ impl Output {
 }
 
 /// Whether the turn can be a GIF.
-fn check_gif((width, height): (u32, u32), turn: &Turn) -> Result<(), Failure> {
+pub(super) fn check_gif((width, height): (u32, u32), turn: &Turn) -> Result<(), Failure> {
     let ticks = TICKS_PER_SECOND * turn.seconds / f64::from(turn.frames);
     if ticks < MIN_TICKS {
         let most = (TICKS_PER_SECOND * turn.seconds / MIN_TICKS) as u32;
@@ -130,19 +131,6 @@ fn check_gif((width, height): (u32, u32), turn: &Turn) -> Result<(), Failure> {
         ));
     }
     Ok(())
-}
-
-/// The path of a frame: the last run of # in the name becomes its number, with as many digits or more.
-fn numbered(pattern: &Path, frame: u32) -> PathBuf {
-    let name = pattern.file_name().and_then(OsStr::to_str).unwrap_or("");
-    let end = name.rfind('#').map_or(0, |at| at + 1);
-    let start = name[..end].trim_end_matches('#').len();
-    let digits = end - start;
-    pattern.with_file_name(format!(
-        "{}{frame:0digits$}{}",
-        &name[..start],
-        &name[end..]
-    ))
 }
 
 /// What comes of the frames.
@@ -223,7 +211,7 @@ impl Frames {
 }
 
 /// The metadata of a frame, with the number of frames in the place of its own number.
-fn of_all_frames(one: &Metadata, frames: u32) -> Metadata {
+pub(super) fn of_all_frames(one: &Metadata, frames: u32) -> Metadata {
     let mut all = Metadata::default();
     for (key, value) in one.entries() {
         match key {
@@ -246,15 +234,6 @@ fn write_png(path: &Path, film: &Film, metadata: &Metadata) -> Result<(), Failur
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn numbers_take_the_place_of_the_signs() {
-        let of = |pattern: &str, frame| numbered(Path::new(pattern), frame);
-        assert_eq!(of("a/f_####.png", 7), Path::new("a/f_0007.png"));
-        assert_eq!(of("#.png", 12), Path::new("12.png"));
-        assert_eq!(of("a#b/##-###x.png", 5), Path::new("a#b/##-005x.png"));
-        assert_eq!(of("é##.png", 123), Path::new("é123.png"));
-    }
 
     #[test]
     fn ticks_add_up_to_the_turn() {

@@ -4,6 +4,8 @@
 //! a picture looks like.
 
 mod advice;
+mod animate;
+mod animate_args;
 mod args;
 mod author_args;
 mod bench;
@@ -13,8 +15,10 @@ mod compare;
 mod contents;
 mod convert;
 pub mod diagnostics;
+mod dial_args;
 mod explain;
 mod failure;
+mod frame_list;
 mod frames;
 mod goal_args;
 mod interrupt;
@@ -26,12 +30,15 @@ mod progress;
 mod render;
 mod replay;
 mod replay_args;
+mod sequence;
 mod stability;
 mod stability_args;
 mod start;
 mod stats;
 mod turntable;
 mod versus;
+mod video;
+mod writer;
 
 use args::{Cli, Command};
 use clap::Parser;
@@ -47,6 +54,7 @@ pub fn run() -> ExitCode {
     let cli = Cli::parse();
     let done = match &cli.command {
         Command::Render(args) => render::run(args),
+        Command::Animate(args) => animate::run(args),
         Command::Turntable(args) => turntable::run(args),
         Command::Convert(args) => convert::run(args),
         Command::Check(args) => check::run(args),

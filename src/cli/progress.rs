@@ -1,5 +1,6 @@
 //! A progress bar, on a terminal only.
 
+use super::say;
 use crate::render::Control;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
@@ -13,19 +14,35 @@ const REFRESH: Duration = Duration::from_millis(100);
 
 /// Draws until dropped.
 pub(crate) struct Progress {
-    running: Option<(Sender<()>, JoinHandle<()>)>,
+    running: Option<Running>,
+}
+
+struct Running {
+    done: Sender<()>,
+    thread: JoinHandle<()>,
+    bar: ProgressBar,
 }
 
 impl Progress {
     /// Starts drawing on a thread of its own, if stderr is a terminal. `limit` is what `--time` allows.
     pub(crate) fn start(control: &Arc<Control>, limit: Option<Duration>) -> Progress {
+        Progress::of_frames(control, limit, Vec::new())
+    }
+
+    /// The same for several frames, which are told by their numbers.
+    pub(crate) fn of_frames(
+        control: &Arc<Control>,
+        limit: Option<Duration>,
+        frames: Vec<u32>,
+    ) -> Progress {
         if !std::io::stderr().is_terminal() {
             return Progress { running: None };
         }
         let control = Arc::clone(control);
         let (done, end) = channel::<()>();
+        let bar = bar();
+        let drawn = bar.clone();
         let thread = std::thread::spawn(move || {
-            let bar = bar();
             let launched = Instant::now();
             let mut tracing_since = None;
             while end.recv_timeout(REFRESH) == Err(RecvTimeoutError::Timeout) {
@@ -41,22 +58,35 @@ impl Progress {
                 bar.set_position(samples.max((total as f64 * clock.min(1.0)) as u64));
                 let by_samples = remaining(since.elapsed(), samples, total);
                 let by_clock = limit.map(|limit| limit.saturating_sub(spent));
-                bar.set_message(match by_samples.into_iter().chain(by_clock).min() {
+                let left = match by_samples.into_iter().chain(by_clock).min() {
                     Some(left) => format!("{} left", words(left)),
                     None => String::new(),
-                });
+                };
+                bar.set_message(place(samples, total, &frames) + &left);
             }
             bar.finish_and_clear();
         });
         Progress {
-            running: Some((done, thread)),
+            running: Some(Running {
+                done,
+                thread,
+                bar: drawn,
+            }),
+        }
+    }
+
+    /// Says a line above the bar.
+    pub(crate) fn say(&self, line: &str) {
+        match &self.running {
+            Some(running) => running.bar.suspend(|| say(line)),
+            None => say(line),
         }
     }
 }
 
 impl Drop for Progress {
     fn drop(&mut self) {
-        if let Some((done, thread)) = self.running.take() {
+        if let Some(Running { done, thread, .. }) = self.running.take() {
             drop(done);
             // A drawing thread that died took only the bar with it.
             let _ = thread.join();
@@ -71,6 +101,16 @@ fn bar() -> ProgressBar {
         bar.set_style(style.progress_chars("=> "));
     }
     bar
+}
+
+/// Which of `frames` is being traced, and how much of it is done; nothing if there are none.
+fn place(samples: u64, total: u64, frames: &[u32]) -> String {
+    let share = samples as f64 / total as f64 * frames.len() as f64;
+    // After the last sample of the last frame, it is still that one.
+    match frames.get((share as usize).min(frames.len().saturating_sub(1))) {
+        Some(frame) => format!("frame {frame}: {:.0} % · ", 100.0 * share.fract()),
+        None => String::new(),
+    }
 }
 
 /// Samples cost the same on average from first to last, so the rest takes as long in proportion.
@@ -108,6 +148,14 @@ mod tests {
         assert_eq!(remaining(s(10), 25, 100), Some(s(30)));
         assert_eq!(remaining(s(10), 0, 100), None);
         assert_eq!(remaining(s(10), 100, 100), Some(s(0)));
+    }
+
+    #[test]
+    fn frames_are_told_by_their_number() {
+        assert_eq!(place(0, 400, &[]), "");
+        assert_eq!(place(0, 400, &[3, 5, 7, 9]), "frame 3: 0 % · ");
+        assert_eq!(place(150, 400, &[3, 5, 7, 9]), "frame 5: 50 % · ");
+        assert_eq!(place(400, 400, &[3, 5, 7, 9]), "frame 9: 0 % · ");
     }
 
     #[test]

@@ -19,7 +19,9 @@ mod planes;
 mod png;
 mod resolve;
 pub mod srgb;
+mod stored;
 mod write;
+mod y4m;
 
 pub use self::aov::Aov;
 pub use self::blocks::Blocks;
@@ -29,7 +31,9 @@ pub use self::gif::{GifFrame, TICKS_PER_SECOND, encode_gif};
 pub use self::metadata::Metadata;
 pub use self::planes::{Film, Planes, Window};
 pub use self::png::{develop, encode_png};
-pub use self::write::{check_folder, write_file};
+pub use self::stored::{DecodeError, Stored, decode_exr, decode_png};
+pub use self::write::{check_folder, partial_name, write_file, write_frame};
+pub use self::y4m::{write_y4m_frame, write_y4m_header};
 
 /// An image could not be encoded: its size is beyond what the format holds.
 #[derive(Debug, thiserror::Error)]

@@ -11,11 +11,31 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// Any of the file system.
 pub fn write_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let temporary = temporary_name(path)?;
-    let written = write_all(&temporary, bytes).and_then(|()| fs::rename(&temporary, path));
+    write_by(&temporary_name(path)?, path, bytes)
+}
+
+/// The same for a file of many that the same command writes again if it is killed: the temporary is `NAME.partial`
+/// whatever the process, so that the next one leaves none behind.
+///
+/// # Errors
+/// Any of the file system.
+pub fn write_frame(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    write_by(&partial_name(path), path, bytes)
+}
+
+/// `NAME.partial` beside `path`.
+#[must_use]
+pub fn partial_name(path: &Path) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(".partial");
+    PathBuf::from(name)
+}
+
+fn write_by(temporary: &Path, path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let written = write_all(temporary, bytes).and_then(|()| fs::rename(temporary, path));
     if written.is_err() {
         // The first error is the one to tell; the temporary may not even exist.
-        let _ = fs::remove_file(&temporary);
+        let _ = fs::remove_file(temporary);
     }
     written
 }

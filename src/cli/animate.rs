@@ -1,0 +1,244 @@
+//! `luxel animate`: frames of one scene, each a file of its own, and films made of them.
+
+use super::animate_args::AnimateArgs;
+use super::failure::Failure;
+use super::frame_list::FrameList;
+use super::load::Loaded;
+use super::progress::{Progress, words};
+use super::sequence::Sequence;
+use super::stats::lost;
+use super::video::Video;
+use super::writer::Writer;
+use super::{diagnostics, interrupt, load, print_result, say};
+use crate::film;
+use crate::render::{Control, Renderer, Rendering, Stages};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Renders the frames that are not there yet.
+pub(crate) fn run(args: &AnimateArgs) -> Result<(), Failure> {
+    let dials = &args.dials;
+    let files = Sequence::choose(args.output.as_deref(), &args.scene, &dials.aov)?;
+    let loaded = load(args)?;
+    let animation = &loaded.desc.animation;
+    let scenes = || FrameList::of_range(animation.frames.clone());
+    let frames = args.frames.clone().unwrap_or_else(scenes);
+    let settings = dials.settings(&loaded.desc, args.spp);
+    let (gif, y4m) = (args.gif.as_deref(), args.y4m.as_deref());
+    let (size, fps) = (settings.size, animation.fps);
+    files.prepare()?;
+    let video = Video::begin(gif, y4m, &frames, size, fps)?;
+    let run = Run {
+        args,
+        files,
+        video,
+        renderer: loaded.renderer(settings)?,
+        writer: Writer::default(),
+        rendered: 0,
+        beside_tracing: Duration::ZERO,
+    };
+    let todo = run.unfinished(&frames)?;
+    say(&match frames.len() - todo.len() as u32 {
+        0 => frames.to_string(),
+        finished => format!("{frames}; {finished} of them are finished"),
+    });
+    let control = Arc::new(Control::of_frames(todo.len() as u32));
+    interrupt::listen(&control);
+    run.frames(&frames, &todo, &control)
+}
+
+/// Reads the scene and tells what there is to say about it.
+fn load(args: &AnimateArgs) -> Result<Loaded, Failure> {
+    let dials = &args.dials;
+    let (loaded, warnings) = load::scene(&args.scene, dials.max_memory)?;
+    // If nobody listens on stderr, so be it.
+    let _ = diagnostics::print(&warnings);
+    if dials.strict {
+        Failure::if_any(&warnings)?;
+    }
+    if !dials.nee.is_on() && loaded.has_punctual_lights() {
+        say("warning: with --nee off, lights without extent (`light: ..`) do not shine");
+    }
+    Ok(loaded)
+}
+
+/// An animation while it is rendered.
+struct Run<'a> {
+    args: &'a AnimateArgs,
+    files: Sequence,
+    video: Video,
+    renderer: Renderer,
+    writer: Writer,
+    /// Frames that were rendered and written.
+    rendered: u32,
+    /// What tracing waited for, in all frames together.
+    beside_tracing: Duration,
+}
+
+impl Run<'_> {
+    /// Those of the frames whose files are not there. All are looked at before anything is rendered.
+    fn unfinished(&self, frames: &FrameList) -> Result<Vec<u32>, Failure> {
+        let mut unfinished = Vec::new();
+        for frame in frames.iter() {
+            if self.args.overwrite || self.finished(frame)?.is_none() {
+                unfinished.push(frame);
+            }
+        }
+        Ok(unfinished)
+    }
+
+    fn finished(&self, frame: u32) -> Result<Option<film::Stored>, Failure> {
+        self.files.finished(frame, &self.encoding(frame))
+    }
+
+    fn encoding(&self, frame: u32) -> super::output::Encoding<'_> {
+        let dials = &self.args.dials;
+        let metadata = self.renderer.metadata(frame);
+        self.files.encoding(metadata, dials.exposure, &dials.aov)
+    }
+
+    /// Renders the frames of `todo` and shows all of `frames`.
+    fn frames(
+        mut self,
+        frames: &FrameList,
+        todo: &[u32],
+        control: &Arc<Control>,
+    ) -> Result<(), Failure> {
+        let launched = Instant::now();
+        let bar = Progress::of_frames(control, None, todo.to_vec());
+        let (mut done, mut shown) = (Ok(()), 0);
+        for frame in frames.iter() {
+            done = if todo.binary_search(&frame).is_ok() {
+                self.frame(frame, control, &bar)
+            } else {
+                self.show_finished(frame)
+            };
+            if done.is_err() || control.stopped() {
+                break;
+            }
+            shown += 1;
+        }
+        // Whatever ended it, what is on its way to the disk is finished.
+        let last = self.settle(&bar);
+        let (rendered, all) = (self.rendered, todo.len());
+        if let Err(failure) = done.and(last) {
+            bar.say(&format!("{rendered} of {all} frames are finished and stay"));
+            return Err(failure);
+        }
+        if shown < frames.len() {
+            bar.say(&format!(
+                "stopped; {rendered} of {all} frames are finished, and the same line goes on with the rest"
+            ));
+            return Err(Failure::resumable());
+        }
+        drop(bar);
+        self.finish(frames, launched.elapsed())
+    }
+
+    /// Writes the films, and says what all of it cost.
+    fn finish(self, frames: &FrameList, took: Duration) -> Result<(), Failure> {
+        let rendered = self.rendered;
+        let beside = self
+            .beside_tracing
+            .checked_div(rendered)
+            .unwrap_or_default();
+        let metadata = match frames.iter().next() {
+            Some(frame) => self.encoding(frame).metadata,
+            None => film::Metadata::default(),
+        };
+        self.video.finish(&metadata)?;
+        say(&match rendered {
+            0 => "nothing was left to render".to_owned(),
+            1 => format!("1 frame in {}", words(took)),
+            _ => format!(
+                "{rendered} frames in {}; beside tracing, {} a frame",
+                words(took),
+                words(beside)
+            ),
+        });
+        Ok(())
+    }
+
+    /// Renders a frame and sends it on its way to the disk; one that is stopped is dropped.
+    fn frame(&mut self, frame: u32, control: &Control, bar: &Progress) -> Result<(), Failure> {
+        let dials = &self.args.dials;
+        let rendering = self.renderer.render(frame, control);
+        if rendering.stats.stopped {
+            return Ok(());
+        }
+        let told = lost(&rendering.film, &rendering.non_finite);
+        if let Some(lost) = told.filter(|_| dials.strict) {
+            // Not written, or the next run would take the frame as finished.
+            return Err(Failure::lost_samples(lost, LOST_HINT));
+        }
+        let traced = Instant::now();
+        self.settle(bar)?;
+        if self.video.is_wanted() {
+            let gain = self.encoding(frame).gain;
+            self.video.show(film::develop(&rendering.film, gain))?;
+        }
+        let files = self.files.clone();
+        let (exposure, aovs) = (dials.exposure, dials.aov.clone());
+        self.beside_tracing += beside_tracing(&rendering.stats.stages);
+        self.writer.begin(account(frame, &rendering), move || {
+            let encoding = files.encoding(rendering.metadata, exposure, &aovs);
+            files.write(frame, &rendering.film, &encoding)
+        });
+        self.beside_tracing += traced.elapsed();
+        Ok(())
+    }
+
+    /// Waits until the frame on its way is written, and tells of it.
+    fn settle(&mut self, bar: &Progress) -> Result<(), Failure> {
+        let Some(written) = self.writer.wait()? else {
+            return Ok(());
+        };
+        self.rendered += 1;
+        if !self.video.takes_stdout() {
+            print_result(format!("{}\n", written.path.display()).as_bytes())?;
+        }
+        bar.say(&format!("{}, write {}", written.line, words(written.took)));
+        Ok(())
+    }
+
+    fn show_finished(&mut self, frame: u32) -> Result<(), Failure> {
+        if !self.video.is_wanted() {
+            return Ok(());
+        }
+        match self.finished(frame)? {
+            Some(stored) => self.video.show(stored.rgb),
+            None => {
+                let path = self.files.path(frame);
+                Err(Failure::io(
+                    path.display(),
+                    &"it was there a moment ago, and is gone",
+                ))
+            }
+        }
+    }
+}
+
+/// What to do about samples that are not finite.
+const LOST_HINT: &str =
+    "`luxel render --replay FRAME,X,Y,SAMPLE` with the same options shows how one came about";
+
+fn beside_tracing(stages: &Stages) -> Duration {
+    stages.pose + stages.extract + stages.flatten + stages.bvh
+}
+
+/// What a frame cost but for its writing, and before that what it lost.
+fn account(frame: u32, rendering: &Rendering) -> String {
+    let stages = &rendering.stats.stages;
+    let lost = match lost(&rendering.film, &rendering.non_finite) {
+        Some(lost) => format!("warning: {lost}\n  = help: {LOST_HINT}\n"),
+        None => String::new(),
+    };
+    format!(
+        "{lost}frame {frame}: pose {}, extract {}, flatten {}, tree {}, trace {}",
+        words(stages.pose),
+        words(stages.extract),
+        words(stages.flatten),
+        words(stages.bvh),
+        words(stages.trace),
+    )
+}
