@@ -1,10 +1,11 @@
 //! Writes the project's own assets, byte for byte the same on every machine: `make_assets [--cat-triangles N] [-o DIR]`.
 //!
 //! The cat is an implicit surface ([`shape`]), meshed ([`net`]), unwrapped ([`unwrap`]) and painted ([`coat`],
-//! [`paint`]); [`simple`] holds the small test assets, [`lattice`] a screen with holes. What this writes with its defaults into `assets/` is committed;
+//! [`paint`]); [`simple`] holds the small test assets, [`lattice`] a screen with holes, [`gear`] gears. What this writes with its defaults into `assets/` is committed;
 //! a finer cat is made on demand into a folder of its own. No transcendental function, no hash order and no clock.
 
 mod coat;
+mod gear;
 mod lattice;
 mod net;
 mod obj;
@@ -64,6 +65,10 @@ fn assets(cat_triangles: usize) -> io::Result<Vec<(&'static str, Vec<u8>)>> {
         ("cat.obj", text.into_bytes()),
         ("cat.mtl", CAT_MTL.into()),
         ("cat.png", png(CAT_TEXTURE, &texels)?),
+        ("gear.mtl", gear::GEAR_MTL.into()),
+        ("gear_12.obj", gear::gear(12).into_bytes()),
+        ("gear_18.obj", gear::gear(18).into_bytes()),
+        ("gear_36.obj", gear::gear(36).into_bytes()),
         ("lattice.obj", lattice::LATTICE.into()),
         ("lattice.mtl", lattice::LATTICE_MTL.into()),
         (
