@@ -102,6 +102,17 @@
 //!   convergence and other bits.
 //! * `--noise` and `--time` without `--spp` do not stop at the scene's samples.
 //! * `world::AuthoringIndex` is a pair, entity and node, since one entity of a scene may stand for a file's many.
+//! * What moved is not asked of hecs's `ChangeTracker`: it compares with clones, as comparing what was extracted with the
+//!   frame before's does, but it needs the world mutable and does not see that a mesh became another. Poses are computed
+//!   for all entities; nothing but instances, spheres, lights and the camera is made anew from them.
+//! * What stands keeps its tree from frame to frame, under a small one over what moves. Nothing can deform, so that nothing
+//!   is ever refitted.
+//! * The box of an instance is that of its vertices, found by walking its mesh's tree: to the bit the same as from all of
+//!   them, in microseconds.
+//! * `world::Time` is a frame and a rate, since frame / rate is rounded: a turn of whole frames is one to the bit.
+//! * Frames of an animation are `NAME.partial` until they are finished, whatever the process, so that one that is killed
+//!   leaves nothing that the next does not replace; they are known again by their metadata, entry by entry, so that what
+//!   differs has a name.
 
 pub mod asset;
 pub mod author;
