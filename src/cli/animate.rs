@@ -166,7 +166,7 @@ impl Run<'_> {
         if rendering.stats.stopped {
             return Ok(());
         }
-        let told = lost(&rendering.film, &rendering.non_finite);
+        let told = lost(rendering.film.total_non_finite(), &rendering.non_finite);
         if let Some(lost) = told.filter(|_| dials.strict) {
             // Not written, or the next run would take the frame as finished.
             return Err(Failure::lost_samples(lost, LOST_HINT));
@@ -229,7 +229,7 @@ fn beside_tracing(stages: &Stages) -> Duration {
 /// What a frame cost but for its writing, and before that what it lost.
 fn account(frame: u32, rendering: &Rendering) -> String {
     let stages = &rendering.stats.stages;
-    let lost = match lost(&rendering.film, &rendering.non_finite) {
+    let lost = match lost(rendering.film.total_non_finite(), &rendering.non_finite) {
         Some(lost) => format!("warning: {lost}\n  = help: {LOST_HINT}\n"),
         None => String::new(),
     };

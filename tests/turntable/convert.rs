@@ -74,6 +74,7 @@ fn node(name: Option<&str>, parent: Option<usize>, mesh: Option<usize>) -> Model
         mesh,
         camera_vfov_deg: None,
         light: None,
+        motion: None,
     }
 }
 
