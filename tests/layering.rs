@@ -21,6 +21,7 @@ const RULES: &[Rule] = &[
         "asset",
         &["diag", "math"],
         &[
+            "exr",
             "gltf",
             "image",
             "memchr",

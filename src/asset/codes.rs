@@ -16,6 +16,7 @@ codes! {
     TOO_LARGE = "E109": "an image, polygon or mesh beyond a documented limit";
     PARSER = "E110": "the OBJ parser gave something other than what the guard asked for: a bug of luxel";
     OVER_BUDGET = "E111": "more memory than files may take (`--max-memory`)";
+    BAD_RADIANCE = "E112": "an image of radiance with pixels that are negative, not finite or too bright";
     GLTF_CONTAINER = "E120": "a glTF file whose binary container (GLB) is broken, or that is neither GLB nor text";
     GLTF_VERSION = "E121": "a glTF file of another version than 2";
     GLTF_JSON = "E122": "a glTF file whose text is not JSON";
@@ -46,6 +47,7 @@ codes! {
     DUPLICATE_FACE = "W116": "triangles that have the same three vertices as one before them";
     INVISIBLE = "W117": "an opacity of zero, as some exporters write for opaque surfaces (`Tr 1`): taken as opaque";
     NO_ALPHA = "W118": "an opacity texture (`map_d`) without alpha: the surface stays opaque";
+    NOT_A_PANORAMA = "W119": "an image of the sky that is not twice as wide as high";
     GLTF_ODD_VALUE = "W120": "a value of a glTF file that breaks the format where luxel does not need it";
     GLTF_UNKNOWN_PROPERTY = "W121": "a property of a glTF file that the format does not have, and that resembles one that it has";
     GLTF_EXTENSION = "W122": "an optional extension of a glTF file which luxel does not have";

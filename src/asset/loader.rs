@@ -2,12 +2,14 @@
 
 use super::limits::{Budget, Limits};
 use super::materials::Source;
+use super::panorama;
 use super::paths::{canonical, similar_file};
 use super::reading::Reading;
 use super::scan::{self, Scan};
 use super::told::Told;
 use super::{
-    AssetStore, Mesh, MeshId, Model, ModelId, Texture, TextureId, codes, gltf, obj, text, texture,
+    AssetStore, Mesh, MeshId, Model, ModelId, Panorama, PanoramaId, Texture, TextureId, codes,
+    gltf, obj, text, texture,
 };
 use crate::diag::Diagnostic;
 use rayon::prelude::*;
@@ -123,6 +125,27 @@ impl Loader {
         }
     }
 
+    /// Reads an image of the sky.
+    ///
+    /// # Errors
+    /// A file that is missing, is neither a Radiance HDR nor an OpenEXR image, is damaged, holds what is no radiance, or
+    /// is too large.
+    pub fn panorama(&mut self, path: &Path) -> Result<PanoramaId, Diagnostic> {
+        let bytes = self.read(path)?;
+        let image = panorama::Image::open(path, &bytes)?;
+        let says = image.says();
+        self.budget
+            .allow(image.passing(), &format!("decoding {says}"), path)?;
+        self.charge(image.kept(), &says, path)?;
+        self.warnings.extend(image.odd_shape());
+        let kept = image.kept();
+        let panorama = image
+            .decode()
+            .inspect_err(|_| self.budget.give_back(kept))?;
+        self.store.panoramas.push(Arc::new(panorama));
+        Ok(PanoramaId(self.store.panoramas.len() as u32 - 1))
+    }
+
     /// A mesh that was read, by its id.
     #[must_use]
     pub fn loaded(&self, id: MeshId) -> &Arc<Mesh> {
@@ -133,6 +156,12 @@ impl Loader {
     #[must_use]
     pub fn loaded_texture(&self, id: TextureId) -> &Arc<Texture> {
         self.store.texture(id)
+    }
+
+    /// An image of the sky that was read, by its id.
+    #[must_use]
+    pub fn loaded_panorama(&self, id: PanoramaId) -> &Arc<Panorama> {
+        self.store.panorama(id)
     }
 
     /// A glTF file that was read, by its id.

@@ -1,4 +1,4 @@
-//! Files to arrays: meshes (OBJ with MTL, glTF) and textures, behind ids in an immutable store.
+//! Files to arrays: meshes (OBJ with MTL, glTF), textures and skies, behind ids in an immutable store.
 //!
 //! Stage two. Enter: paths that a scene names. Leave: an immutable [`AssetStore`] and ids into it, or diagnostics with
 //! file and line, or file and JSON pointer.
@@ -6,6 +6,7 @@
 //! ```text
 //!  OBJ ─▶ text ─▶ scan (lines, indices, plain numbers; others by tobj) ─▶ obj (polygons cut, triangles in file order) ─▶ Mesh
 //!  MTL ─▶ text ─▶ mtl ─▶ MeshMaterial        PNG, JPEG ─▶ texture ─▶ Texture
+//!  HDR, EXR ─▶ panorama ─▶ Panorama
 //!  glTF, GLB ─▶ gltf (its own picture) ─▶ Model of nodes, Meshes, MeshMaterials, Textures
 //! ```
 //!
@@ -24,6 +25,7 @@ mod mtl;
 pub mod normals;
 mod numbers;
 mod obj;
+mod panorama;
 mod paths;
 mod places;
 mod reading;
@@ -40,6 +42,7 @@ mod triangulate;
 pub use corner::PerCorner;
 pub use limits::Limits;
 pub use loader::Loader;
+pub use panorama::{MAX_RADIANCE, Panorama};
 pub use reading::Reading;
 
 use crate::math::{DAffine3, DMat3, DVec2, DVec3, quaternion};
@@ -53,6 +56,10 @@ pub struct MeshId(pub u32);
 /// A texture of the [`AssetStore`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct TextureId(pub u32);
+
+/// An image of the sky of the [`AssetStore`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct PanoramaId(pub u32);
 
 /// A glTF file of the [`AssetStore`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -427,6 +434,8 @@ pub struct AssetStore {
     pub meshes: Vec<Arc<Mesh>>,
     /// Behind [`TextureId`].
     pub textures: Vec<Arc<Texture>>,
+    /// Behind [`PanoramaId`].
+    pub panoramas: Vec<Arc<Panorama>>,
     /// Behind [`ModelId`].
     pub models: Vec<Arc<Model>>,
     /// Behind [`AssetStore::hash`].
@@ -467,6 +476,12 @@ impl AssetStore {
     #[must_use]
     pub fn texture(&self, id: TextureId) -> &Arc<Texture> {
         &self.textures[id.0 as usize]
+    }
+
+    /// The image of the sky of an id of this store.
+    #[must_use]
+    pub fn panorama(&self, id: PanoramaId) -> &Arc<Panorama> {
+        &self.panoramas[id.0 as usize]
     }
 
     /// The glTF file of an id of this store.

@@ -4,6 +4,7 @@ mod damage;
 mod images;
 mod materials;
 mod memory;
+mod skies;
 
 use super::*;
 use crate::diag::Diagnostic;
