@@ -15,7 +15,7 @@
 //! | module | takes | gives | never knows |
 //! |---|---|---|---|
 //! | [`scene`] | text | [`scene::SceneDesc`]: every default and unit; errors with line and column | hecs, pixels |
-//! | [`asset`] | paths, bytes | [`asset::Mesh`] in f64, [`asset::Texture`], in an immutable [`asset::AssetStore`] | the scene |
+//! | [`asset`] | paths, bytes | [`asset::Mesh`] in f64, [`asset::Texture`], [`asset::Panorama`], in an immutable [`asset::AssetStore`] | the scene |
 //! | [`world`] | a `SceneDesc` | a `hecs::World` of components; poses at a time | kernels |
 //! | [`build`] | `&World` | [`flat::FlatScene`]: extract, flatten, tree, linearize | files, pixels |
 //! | [`flat`] | | **data only**: lane blocks, cold shading arrays, materials, lights, camera, tree, needs | hecs, io, rayon |
@@ -89,6 +89,7 @@
 //!   itself, so that several errors of one entity are told at once, each at its place.
 //! * `gltf` on an entity also takes a long form, `(path: "room.glb", lights: false)`, and `Mesh` one that names a mesh of
 //!   a glTF file, `Mesh(path: "room.glb", mesh: 3)`: what `convert` writes and `turntable` needs.
+//! * `background: Hdr` also takes a long form, with `rotate_deg`, `strength` and `filter`. The sky is an entity of the world.
 //! * A glTF mesh without normals is flat, as its specification demands; an OBJ mesh stays smooth to 60°.
 //! * The typed document of the `gltf` crate gives structure, the JSON beside it the numbers: the crate rounds them to f32.
 //! * Opacity is a stage of its own behind the kernels, which know nothing of it: a ray that passes a surface leaves it by

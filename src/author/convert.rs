@@ -6,8 +6,8 @@ use super::{node, numbers};
 use crate::asset::{Light, Loader, Mesh, Model};
 use crate::math::{DVec3, sin_cos_deg};
 use crate::scene::{
-    AnimationDesc, CameraDesc, CameraPose, ColorDesc, EntityDesc, LightDesc, NamedMaterial, Placed,
-    RenderDesc, SceneDesc, ShapeDesc, TransformDesc,
+    AnimationDesc, BackgroundDesc, CameraDesc, CameraPose, EntityDesc, LightDesc, NamedMaterial,
+    Placed, RenderDesc, SceneDesc, ShapeDesc, TransformDesc,
 };
 use std::collections::BTreeSet;
 
@@ -183,7 +183,7 @@ impl Scene {
                 file: "".into(),
                 source: "".into(),
                 render: RenderDesc::default(),
-                background: ColorDesc::Linear(background),
+                background: BackgroundDesc::Linear(background),
                 camera,
                 materials: self.materials,
                 entities: self.entities.into_iter().map(placed).collect(),

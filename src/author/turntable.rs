@@ -8,8 +8,9 @@ use super::fit::View;
 use super::numbers::{decimals, significant};
 use crate::math::{DVec3, euler_deg, sin_cos_deg};
 use crate::scene::{
-    AnimationDesc, CameraDesc, CameraPose, ColorDesc, EntityDesc, GltfDesc, MaterialDesc,
-    NamedMaterial, Placed, RenderDesc, RotateDesc, SceneDesc, ShapeDesc, SpinDesc, TransformDesc,
+    AnimationDesc, BackgroundDesc, CameraDesc, CameraPose, ColorDesc, EntityDesc, GltfDesc,
+    MaterialDesc, NamedMaterial, Placed, RenderDesc, RotateDesc, SceneDesc, ShapeDesc, SpinDesc,
+    TransformDesc,
 };
 use std::path::Path;
 
@@ -145,7 +146,7 @@ pub fn turntable(points: &[DVec3], wanted: &Turntable) -> Result<SceneDesc, NoEx
             max_bounces: MAX_BOUNCES,
             ..RenderDesc::default()
         },
-        background: ColorDesc::Linear(BACKGROUND),
+        background: BackgroundDesc::Linear(BACKGROUND),
         camera: Some(CameraDesc {
             pose: Some(pose),
             vfov_deg: VFOV_DEG,

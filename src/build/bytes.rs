@@ -1,6 +1,6 @@
 //! How large the buffers of a scene are.
 
-use crate::flat::{FlatScene, Geometry};
+use crate::flat::{Environment, FlatScene, Geometry};
 use std::sync::Arc;
 
 /// A buffer, or buffers of one kind, of a [`FlatScene`].
@@ -67,6 +67,12 @@ pub fn buffer_bytes(scene: &FlatScene) -> Vec<BufferBytes> {
             1,
             scene.textures.iter().filter_map(|t| t.alpha.as_ref()),
         ),
+        sky("sky texels", scene, |sky| buffer("", &sky.texels)),
+        sky("sky row sums", scene, |sky| buffer("", &sky.table.rows)),
+        sky("sky column sums", scene, |sky| {
+            buffer("", &sky.table.columns)
+        }),
+        sky("sky heights", scene, |sky| buffer("", &sky.table.heights)),
         buffer("light spheres", &scene.lights.spheres),
         BufferBytes {
             name: "light triangles",
@@ -91,6 +97,17 @@ fn buffer<T>(name: &'static str, elements: &[T]) -> BufferBytes {
         len: elements.len(),
         bytes: size_of_val(elements),
     }
+}
+
+/// A buffer of the sky, which few scenes have.
+fn sky(
+    name: &'static str,
+    scene: &FlatScene,
+    of: impl Fn(&Environment) -> BufferBytes,
+) -> BufferBytes {
+    let none = buffer::<u8>("", &[]);
+    let buffer = scene.environment.as_ref().map_or(none, of);
+    BufferBytes { name, ..buffer }
 }
 
 /// Planes of images, `texel` bytes an element, each plane once.

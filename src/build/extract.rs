@@ -4,7 +4,7 @@ use super::meshes::MeshKey;
 use crate::asset::{Light, MeshId};
 use crate::flat::ObjectId;
 use crate::world::{
-    AuthoringIndex, Camera, Emissive, Keys, Material, Normals, Parent, Pose, Shape, Spin,
+    AuthoringIndex, Camera, Emissive, Keys, Material, Normals, Parent, Pose, Shape, Sky, Spin,
 };
 use hecs::{Entity, World};
 use std::collections::{HashMap, HashSet};
@@ -16,6 +16,7 @@ pub(crate) struct Extracted {
     pub(crate) spheres: Vec<SphereItem>,
     pub(crate) meshes: Vec<MeshItem>,
     pub(crate) lights: Vec<LightItem>,
+    pub(crate) sky: Option<Sky>,
 }
 
 /// A light without extent, where it is.
@@ -83,6 +84,7 @@ pub(crate) fn extract(world: &World, pose_of: impl Fn(Entity) -> Pose) -> Extrac
         spheres: Vec::new(),
         meshes: Vec::new(),
         lights: Vec::new(),
+        sky: world.query::<&Sky>().iter().next().copied(),
     };
     for (entity, index, shape, material, emissive, camera, light) in rows {
         let look = Look {

@@ -1,6 +1,7 @@
 //! Flatten: extracted items into the arrays of a frame, up to its tree.
 
 use super::bvh::{Accel, Primitives, Quality, SphereItem};
+use super::environment::environment;
 use super::extract::{Extracted, MeshItem};
 use super::instances::{instance, maps};
 use super::kept::{Flat, Kept, Sources};
@@ -13,7 +14,8 @@ use super::rebase::to_scene;
 use super::spheres;
 use crate::asset::{AssetStore, MeshId, PerCorner};
 use crate::flat::{
-    Fresnel, Geometry, Instance, LightPlace, Lights, Material, MaterialId, Rebase, Spheres, Texture,
+    Environment, EnvironmentTable, Fresnel, Geometry, Instance, LightPlace, Lights, Material,
+    MaterialId, Rebase, Spheres, Texture,
 };
 use crate::math::{Aabb, DAffine3, DVec3, Vec3};
 use crate::world::Normals;
@@ -23,13 +25,14 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// What is kept from frame to frame: functions of a mesh and its normals, or of a texture, alone.
+/// What is kept from frame to frame: functions of a mesh and its normals, of a texture, or of the sky, alone.
 #[derive(Default)]
 pub(crate) struct Cache {
     smooth: BTreeMap<MeshKey, PerCorner<DVec3>>,
     local: BTreeMap<MeshKey, Arc<LocalMesh>>,
     slots: BTreeMap<MeshId, Vec<bool>>,
     means: Means,
+    sky: Option<Arc<EnvironmentTable>>,
 }
 
 /// Everything of a frame but its tree and its camera.
@@ -51,6 +54,7 @@ pub(crate) struct Flattened {
     pub(crate) materials: Vec<Material>,
     pub(crate) textures: Vec<Texture>,
     pub(crate) lights: Lights,
+    pub(crate) environment: Option<Environment>,
     /// What new local geometries took.
     pub(crate) local_trees: Duration,
 }
@@ -141,6 +145,12 @@ pub(crate) fn flatten(
     for light in &items.lights {
         flattener.lights.punctual(light, &context.rebase);
     }
+    let environment = items
+        .sky
+        .map(|sky| environment(&sky, context.store, &mut flattener.cache.sky));
+    if let Some(environment) = &environment {
+        flattener.lights.environment(environment);
+    }
     let Flattener { tables, shared, .. } = flattener;
     flattener.cache.means = tables.means;
     Flattened {
@@ -156,6 +166,7 @@ pub(crate) fn flatten(
         materials: tables.materials,
         textures: tables.textures,
         lights: flattener.lights.finish(),
+        environment,
         local_trees: flattener.local_trees,
     }
 }

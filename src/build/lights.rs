@@ -1,19 +1,20 @@
-//! The light table: emissive spheres and triangles, and lights without extent, with their weights.
+//! The light table: emissive spheres and triangles, lights without extent, and the sky, with their weights.
 
 use super::extract::LightItem;
 use super::rebase::to_scene;
 use crate::asset::Light;
 use crate::flat::{
-    Instance, LightPlace, Lights, Material, MaterialId, Opacity, Punctual, Rebase, Spheres,
+    Environment, Instance, LightPlace, Lights, Material, MaterialId, Opacity, Punctual, Rebase,
+    Spheres,
 };
 use crate::math::{DVec3, Vec3, sin_cos_deg, unit};
 use std::f64::consts::PI;
 
-/// Squared radius of what a sun lights, scene units: the scene is about 1 wide, and this is the cube of side 1 around it.
+/// Squared radius of what a sun or a sky lights, scene units: the scene is about 1 wide, and this is the cube of side 1 around it.
 /// Walls do not count, or a sun would leave no samples to the lamps between them. It only shares out samples.
 const SUNLIT_RADIUS2: f64 = 0.75;
 
-/// Lights while they are collected: spheres first, then triangles, then those without extent.
+/// Lights while they are collected: spheres first, then triangles, then those without extent, then the sky.
 #[derive(Debug, Default)]
 pub(crate) struct Collector {
     lights: Lights,
@@ -101,6 +102,15 @@ impl Collector {
         if self.count(share) {
             self.lights.punctual.push(light);
         }
+    }
+
+    /// Adds the sky, as the sun of which it has the irradiance from all sides together.
+    ///
+    /// A background that is the same everywhere is not sampled: as an image of one colour, a cat on a plane had 0.81 times
+    /// the squared error at 256 samples, but took 2.1 times as long (64 × 48 pixels, 4 bounces).
+    pub(crate) fn environment(&mut self, environment: &Environment) {
+        let irradiance = f64::from(environment.strength) * environment.table.total;
+        self.lights.environment = self.count(SUNLIT_RADIUS2 * irradiance);
     }
 
     /// Whether something of this area is a light: then its weight counts.

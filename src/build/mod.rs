@@ -12,6 +12,7 @@
 pub mod bvh;
 mod bytes;
 mod camera;
+mod environment;
 mod extract;
 mod flatten;
 mod fresnel;
@@ -158,6 +159,7 @@ impl SceneBuilder {
             textures: flat.textures,
             lights: flat.lights,
             background: self.options.background,
+            environment: flat.environment,
             rebase: self.rebase,
             needs: Default::default(),
             frame,

@@ -22,6 +22,7 @@ pub(crate) fn needs(scene: &FlatScene) -> Needs {
         lights: !scene.lights.is_empty(),
         punctual: !scene.lights.punctual.is_empty(),
         background: scene.background != [0.0; 3],
+        environment: scene.environment.is_some(),
         diffuse: scatters(Scatter::Diffuse),
         mirror: scatters(Scatter::Mirror),
         glass: scatters(Scatter::Glass),

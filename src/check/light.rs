@@ -6,7 +6,7 @@ use super::{codes, darkness};
 use crate::asset::Light;
 use crate::diag::Diagnostic;
 use crate::math::{DVec3, ln};
-use crate::scene::ColorDesc;
+use crate::scene::BackgroundDesc;
 use std::f64::consts::{LN_2, PI};
 
 /// Radiance of lit white paper above which a picture is white, even with ten stops less.
@@ -20,8 +20,7 @@ const WELL_EXPOSED: f64 = 0.5;
 
 /// Nothing in the world shines, that of files included.
 pub(super) fn dark(posed: &Posed) -> Option<Diagnostic> {
-    let background = posed.desc.background != ColorDesc::Linear([0.0; 3]);
-    let lit = background
+    let lit = lit_background(posed)
         || posed.lights.iter().any(|lamp| strength(&lamp.light) > 0.0)
         || posed.items.iter().any(|item| shines(posed, item));
     (!lit).then(|| {
@@ -30,6 +29,17 @@ pub(super) fn dark(posed: &Posed) -> Option<Diagnostic> {
             "nothing shines, the files included, and the background is black",
         )
     })
+}
+
+/// Whether anything comes from where nothing is.
+fn lit_background(posed: &Posed) -> bool {
+    match &posed.desc.background {
+        BackgroundDesc::Linear(radiance) => *radiance != [0.0; 3],
+        BackgroundDesc::Hdr(hdr) => {
+            let skies = &posed.store.panoramas;
+            hdr.strength > 0.0 && skies.iter().any(|sky| sky.brightest() > 0.0)
+        }
+    }
 }
 
 /// Whether a shape emits: as its entity says, or as its file does where the entity says nothing.
@@ -55,8 +65,7 @@ pub(super) fn units(posed: &Posed) -> Option<Diagnostic> {
         .map(|lamp| (paper(scene.as_ref(), lamp), lamp))
         .max_by(|a, b| a.0.total_cmp(&b.0))?;
     let (radiance, lamp) = strongest;
-    let alone = posed.desc.background == ColorDesc::Linear([0.0; 3])
-        && !posed.items.iter().any(|item| shines(posed, item));
+    let alone = !lit_background(posed) && !posed.items.iter().any(|item| shines(posed, item));
     let what = if radiance > GLARING {
         "white"
     } else if radiance < DIM && radiance > 0.0 && alone {

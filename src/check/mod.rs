@@ -20,7 +20,7 @@ mod words;
 use crate::asset::AssetStore;
 use crate::diag::codes as scene_codes;
 use crate::diag::{Diagnostic, Lines};
-use crate::scene::{ColorDesc, EntityDesc, SceneDesc, ShapeDesc};
+use crate::scene::{BackgroundDesc, EntityDesc, SceneDesc, ShapeDesc};
 use hecs::World;
 use posed::Posed;
 use std::collections::BTreeSet;
@@ -82,7 +82,7 @@ pub fn check_light(desc: &SceneDesc) -> Option<Diagnostic> {
         let by_light = e.light.is_some() || e.gltf.is_some();
         by_file || by_light || e.emissive.is_some_and(|radiance| radiance != [0.0; 3])
     };
-    let dark = desc.background == ColorDesc::Linear([0.0; 3])
+    let dark = desc.background == BackgroundDesc::Linear([0.0; 3])
         && !desc.entities.iter().any(|e| may_shine(&e.value));
     dark.then(|| darkness(desc, "nothing shines and the background is black"))
 }

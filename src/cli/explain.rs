@@ -7,7 +7,7 @@ use super::{load, print_result};
 use crate::build::{BufferBytes, BuildTimes, buffer_bytes};
 use crate::flat::{ColorSource, FlatScene, Material, MaterialId, ObjectId, Opacity, Scatter};
 use crate::render::Settings;
-use crate::scene::{FilterDesc, NormalsDesc, SceneDesc, ShapeDesc};
+use crate::scene::{BackgroundDesc, FilterDesc, NormalsDesc, SceneDesc, ShapeDesc};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -79,7 +79,8 @@ impl Subject<'_> {
             entity.light.is_some() || entity.gltf.is_some()
         });
         let light = self.material(|m| m.emission != [0.0; 3]);
-        let light = light.or_else(|| punctual.clone());
+        let sky = needs.environment.then(|| "background".to_owned());
+        let light = light.or_else(|| punctual.clone()).or(sky);
         let triangles = shape(|s| matches!(s, ShapeDesc::Mesh { .. }));
         let place = |what: &str| Some(what.to_owned());
         vec![
@@ -105,6 +106,7 @@ impl Subject<'_> {
             ("light sampling", needs.lights, light),
             ("lights without extent", needs.punctual, punctual),
             ("background", needs.background, place("background")),
+            ("sky", needs.environment, place("background")),
             ("diffuse", needs.diffuse, scatter(Scatter::Diffuse)),
             ("mirror", needs.mirror, scatter(Scatter::Mirror)),
             ("glass", needs.glass, scatter(Scatter::Glass)),
@@ -148,6 +150,16 @@ impl Subject<'_> {
         entity_name(self.desc, object)
     }
 
+    fn background(&self) -> String {
+        match &self.desc.background {
+            BackgroundDesc::Linear(_) => format!("{:?}", self.scene.background),
+            BackgroundDesc::Hdr(hdr) => format!(
+                "Hdr(path: {:?}, rotate_deg: {}, strength: {}, filter: {:?})",
+                hdr.path.value, hdr.rotate_deg, hdr.strength, hdr.filter
+            ),
+        }
+    }
+
     /// Settings in force, whether written or by default.
     fn settings(&self) -> Vec<(&'static str, String)> {
         let render = &self.desc.render;
@@ -162,7 +174,7 @@ impl Subject<'_> {
             ("spp", render.spp.to_string()),
             ("max_bounces", render.max_bounces.to_string()),
             ("filter", filter),
-            ("background", format!("{:?}", self.scene.background)),
+            ("background", self.background()),
             ("fps", animation.fps.to_string()),
             ("frames", format!("{}..{}", frames.start, frames.end)),
             (

@@ -1,8 +1,9 @@
-//! The light table: emissive spheres and triangles, and lights without extent, for next-event estimation.
+//! The light table: emissive spheres and triangles, lights without extent, and the sky, for next-event estimation.
 //!
 //! A light is chosen with probability `weight / total`, `weight` = power / π, power being the mean of its RGB. For a
 //! surface that is area × radiance, twice where both sides shine; then a point on it: a triangle's uniformly by area, a sphere's uniformly in the solid
-//! angle that it subtends.
+//! angle that it subtends. What comes from infinitely far is weighed by what of it meets the scene ([`super::Environment`]
+//! has its own table of directions).
 
 /// Emissive triangles in scene space, whatever they are stored in.
 #[derive(Clone, Debug, Default)]
@@ -66,7 +67,7 @@ pub enum Punctual {
     },
 }
 
-/// All lights: spheres first, then triangles, then those without extent, each in authoring order.
+/// All lights: spheres first, then triangles, then those without extent, each in authoring order; the sky comes last.
 #[derive(Clone, Debug, Default)]
 pub struct Lights {
     /// Sphere index of each sphere light.
@@ -75,7 +76,9 @@ pub struct Lights {
     pub triangles: LightTriangles,
     /// Lights without extent.
     pub punctual: Vec<Punctual>,
-    /// Running sums of the weights over `spheres`, `triangles` and `punctual`, f64; the last is the total.
+    /// Whether the scene's environment is a light, the last one.
+    pub environment: bool,
+    /// Running sums of the weights over `spheres`, `triangles`, `punctual` and the environment, f64; the last is the total.
     pub cumulative: Vec<f64>,
 }
 
@@ -90,6 +93,13 @@ impl Lights {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.cumulative.is_empty()
+    }
+
+    /// Probability of choosing a light.
+    #[must_use]
+    pub fn share(&self, light: usize) -> f64 {
+        let below = light.checked_sub(1).map_or(0.0, |k| self.cumulative[k]);
+        (self.cumulative[light] - below) / self.total()
     }
 
     /// Sum of all weights.

@@ -7,6 +7,7 @@
 
 pub mod bvh;
 pub mod camera;
+pub mod environment;
 pub mod geometry;
 pub mod lights;
 pub mod materials;
@@ -17,6 +18,7 @@ pub mod triangles;
 
 pub use bvh::{Bvh, Child, LinearNode};
 pub use camera::{Camera, PixelFilter};
+pub use environment::{Environment, EnvironmentTable};
 pub use geometry::{Geometry, Instance, Normals, ObjectId, Shading};
 pub use lights::{LightPlace, LightTriangles, Lights, Punctual};
 pub use materials::{ColorSource, Coverage, Fresnel, Material, MaterialId, Opacity, Scatter};
@@ -54,10 +56,12 @@ pub struct FlatScene {
     pub materials: Vec<Material>,
     /// Behind [`ColorSource::Texture`].
     pub textures: Vec<Texture>,
-    /// Everything that emits, except the background.
+    /// Everything that emits, except a background that is the same everywhere.
     pub lights: Lights,
-    /// Radiance of rays that hit nothing.
+    /// Radiance of rays that hit nothing, the same everywhere.
     pub background: [f32; 3],
+    /// Radiance of rays that hit nothing by direction, instead.
+    pub environment: Option<Environment>,
     /// The camera of this frame.
     pub camera: Camera,
     /// How scene units came about.

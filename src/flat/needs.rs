@@ -29,8 +29,10 @@ pub struct Needs {
     pub lights: bool,
     /// Lights without extent.
     pub punctual: bool,
-    /// The background is not black.
+    /// The background is the same everywhere and not black.
     pub background: bool,
+    /// The background is an image.
+    pub environment: bool,
     /// [`super::Scatter::Diffuse`] occurs.
     pub diffuse: bool,
     /// [`super::Scatter::Mirror`] occurs.

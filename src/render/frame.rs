@@ -10,7 +10,7 @@ use crate::asset::AssetStore;
 use crate::build::{BuildOptions, BuildTimes, SceneBuilder};
 use crate::film::{Blocks, Film, Metadata, Planes, Window};
 use crate::flat::{FlatScene, PixelFilter};
-use crate::scene::{ColorDesc, FilterDesc, SceneDesc};
+use crate::scene::{BackgroundDesc, FilterDesc, SceneDesc};
 use crate::trace::{Rect, TileSums, TraceOptions, Tracer};
 use crate::world::{Time, pose};
 use hecs::World;
@@ -258,9 +258,9 @@ fn build_options(desc: &SceneDesc, settings: &Settings) -> BuildOptions {
             FilterDesc::Gaussian { radius_px } => PixelFilter::Gaussian(radius_px as f32),
         },
         background: match desc.background {
-            ColorDesc::Linear(color) => color.map(|c| c as f32),
-            // The reader refuses images as a background: not yet.
-            ColorDesc::Image { .. } | ColorDesc::Hdr(_) => [0.0; 3],
+            BackgroundDesc::Linear(color) => color.map(|c| c as f32),
+            // The world has it.
+            BackgroundDesc::Hdr(_) => [0.0; 3],
         },
         uv_aov: settings.trace.ids,
         fresnel: settings.trace.fresnel,

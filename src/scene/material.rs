@@ -3,7 +3,7 @@
 use super::layer::Node;
 use super::reader::{Fields, Reader};
 use super::schema::{ColorDesc, MaterialDesc, NamedMaterial};
-use super::values::{ColorRole, Domain};
+use super::values::Domain;
 use crate::diag::codes;
 use std::collections::HashMap;
 
@@ -79,7 +79,7 @@ fn material<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<MaterialDesc> {
 
 fn color(fields: &Fields<'_, '_>, default: [f64; 3]) -> ColorDesc {
     fields.read_or("color", ColorDesc::Linear(default), |r, n| {
-        r.color(n, "`color`", ColorRole::Reflectance)
+        r.color(n, "`color`")
     })
 }
 

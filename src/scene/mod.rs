@@ -2,10 +2,11 @@
 //!
 //! Enters: a RON file. Leaves: a [`SceneDesc`] whose names resolve and whose numbers are finite and in range, or every
 //! error at once. Stages: `layer` cuts the text with its places, `reader` and `values` know types and ranges,
-//! `settings`, `material`, `entity`, `light` and `motion` know the format, `resolve` what concerns several parts.
+//! `background`, `settings`, `material`, `entity`, `light` and `motion` know the format, `resolve` what concerns several parts.
 //!
 //! Deliberately absent: hecs, pixels, the contents of asset files.
 
+mod background;
 mod entity;
 mod layer;
 mod light;
@@ -31,7 +32,6 @@ use reader::{Fields, Reader};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use values::ColorRole;
 
 #[cfg(test)]
 mod tests;
@@ -166,8 +166,8 @@ fn scene<'a>(reader: &Reader<'a>, document: Node<'a>, source: &Arc<str>) -> Opti
     let render = fields.read_or("render", RenderDesc::default(), settings::render);
     let background = fields.read_or(
         "background",
-        ColorDesc::Linear(SceneDesc::BACKGROUND),
-        |r, n| r.color(n, "`background`", ColorRole::Background),
+        BackgroundDesc::Linear(SceneDesc::BACKGROUND),
+        background::background,
     );
     let camera = fields.read_if("camera", settings::camera);
     let materials = fields.read_or("materials", Vec::new(), material::materials);

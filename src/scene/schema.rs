@@ -25,7 +25,7 @@ pub struct SceneDesc {
     /// Image and sampling settings.
     pub render: RenderDesc,
     /// Radiance from everywhere.
-    pub background: ColorDesc,
+    pub background: BackgroundDesc,
     /// The camera at top level, if that is where it stands.
     pub camera: Option<CameraDesc>,
     /// Materials by name, in file order.
@@ -164,8 +164,35 @@ pub enum ColorDesc {
         /// Default Bilinear.
         filter: TextureFilterDesc,
     },
-    /// `Hdr("sky.hdr")`, background only; not yet rendered.
-    Hdr(Placed<String>),
+}
+
+/// `background: ..`.
+#[derive(Clone, Debug, PartialEq)]
+pub enum BackgroundDesc {
+    /// The same everywhere, linear R, G, B. `Srgb("#c0ffee")` is decoded to this by the reader.
+    Linear([f64; 3]),
+    /// By direction: `Hdr("sky.hdr")`, or with named fields.
+    Hdr(HdrDesc),
+}
+
+/// `Hdr(path, rotate_deg, strength, filter)`: a picture of all directions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HdrDesc {
+    /// Relative to the scene's folder, as written.
+    pub path: Placed<String>,
+    /// Turns the picture about +Y, counter-clockwise seen from above; default 0.
+    pub rotate_deg: f64,
+    /// Multiplies its radiance; default 1.
+    pub strength: f64,
+    /// Default Bilinear.
+    pub filter: TextureFilterDesc,
+}
+
+impl HdrDesc {
+    /// `rotate_deg` where it is not said.
+    pub const ROTATE_DEG: f64 = 0.0;
+    /// `strength` where it is not said.
+    pub const STRENGTH: f64 = 1.0;
 }
 
 /// Wrap mode of an image.

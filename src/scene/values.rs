@@ -53,15 +53,6 @@ impl Domain {
     }
 }
 
-/// What a colour is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum ColorRole {
-    /// A share of the light: from 0 to 1.
-    Reflectance,
-    /// Radiance: 0 or above; a sky instead of a texture.
-    Background,
-}
-
 impl<'a> Reader<'a> {
     /// A finite number within `domain`.
     pub(super) fn number(&self, node: Node<'a>, name: &str, domain: Domain) -> Option<f64> {
@@ -209,38 +200,14 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// A colour.
-    pub(super) fn color(&self, node: Node<'a>, name: &str, role: ColorRole) -> Option<ColorDesc> {
-        let known: &[&str] = match role {
-            ColorRole::Reflectance => &["Linear", "Srgb", "Texture", "Image"],
-            ColorRole::Background => &["Linear", "Srgb", "Hdr"],
-        };
-        if node.tuple().is_ok_and(|items| items.len() == 3) {
-            let hint = format!("a colour says its space: Linear{}", node.text);
-            self.error_hint(
-                codes::WRONG_TYPE,
-                node,
-                format!("{name} is a colour without a space"),
-                hint,
-            );
-            return None;
-        }
-        let (variant, body) = self.variant(node, name, known)?;
+    /// A colour that reflects: from 0 to 1.
+    pub(super) fn color(&self, node: Node<'a>, name: &str) -> Option<ColorDesc> {
+        let (variant, body) =
+            self.color_variant(node, name, &["Linear", "Srgb", "Texture", "Image"])?;
         match variant {
-            "Linear" => {
-                let domain = match role {
-                    ColorRole::Reflectance => Domain::Unit,
-                    ColorRole::Background => Domain::UpTo(MAX_RADIANCE),
-                };
-                self.vector(body, name, domain).map(ColorDesc::Linear)
-            }
-            "Srgb" => self.srgb(body),
+            "Linear" => self.vector(body, name, Domain::Unit).map(ColorDesc::Linear),
+            "Srgb" => self.srgb(body).map(ColorDesc::Linear),
             "Image" => self.image(body),
-            "Hdr" => {
-                let file = self.path(self.single(body, "Hdr", "Hdr(\"file\")")?, "the sky")?;
-                self.not_yet(node, "an `Hdr` background");
-                Some(ColorDesc::Hdr(file))
-            }
             _ => Some(ColorDesc::Image {
                 path: self.path(
                     self.single(body, "Texture", "Texture(\"file\")")?,
@@ -252,10 +219,31 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn srgb(&self, body: Node<'a>) -> Option<ColorDesc> {
+    /// One of the variants `known` of a colour, which says its space.
+    pub(super) fn color_variant(
+        &self,
+        node: Node<'a>,
+        name: &str,
+        known: &[&'static str],
+    ) -> Option<(&'static str, Node<'a>)> {
+        if node.tuple().is_ok_and(|items| items.len() == 3) {
+            let hint = format!("a colour says its space: Linear{}", node.text);
+            self.error_hint(
+                codes::WRONG_TYPE,
+                node,
+                format!("{name} is a colour without a space"),
+                hint,
+            );
+            return None;
+        }
+        self.variant(node, name, known)
+    }
+
+    /// What stands in `Srgb("#rrggbb")`, linear.
+    pub(super) fn srgb(&self, body: Node<'a>) -> Option<[f64; 3]> {
         let node = self.single(body, "Srgb", "Srgb(\"#rrggbb\")")?;
         let hex = self.string(node, "`Srgb`")?;
-        let color = srgb::decode_hex(&hex).map(ColorDesc::Linear);
+        let color = srgb::decode_hex(&hex);
         if color.is_none() {
             let hint = "write # and six hexadecimal digits, as in \"#c0ffee\"";
             self.error_hint(
@@ -280,14 +268,7 @@ impl<'a> Reader<'a> {
                 _ => WrapDesc::Clamp,
             })
         });
-        let filter = fields.read_or("filter", TextureFilterDesc::default(), |r, n| {
-            let (variant, body) = r.variant(n, "`filter`", &["Bilinear", "Nearest"])?;
-            r.no_fields(body, variant)?;
-            Some(match variant {
-                "Bilinear" => TextureFilterDesc::Bilinear,
-                _ => TextureFilterDesc::Nearest,
-            })
-        });
+        let filter = fields.read_or("filter", TextureFilterDesc::default(), texture_filter);
         Some(ColorDesc::Image {
             path: path?,
             wrap,
@@ -303,4 +284,14 @@ impl<'a> Reader<'a> {
             format!("{what} cannot be rendered yet"),
         );
     }
+}
+
+/// `Bilinear` or `Nearest`.
+pub(super) fn texture_filter<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<TextureFilterDesc> {
+    let (variant, body) = reader.variant(node, "`filter`", &["Bilinear", "Nearest"])?;
+    reader.no_fields(body, variant)?;
+    Some(match variant {
+        "Bilinear" => TextureFilterDesc::Bilinear,
+        _ => TextureFilterDesc::Nearest,
+    })
 }

@@ -2,7 +2,7 @@
 
 use super::attributes::{Place, emitted};
 use super::camera::image_direction;
-use super::light::{light_pdf, towards};
+use super::light::{Seen, light_pdf, see, towards};
 use super::opacity::{pass_paths, pass_shadows, random};
 use super::sampler::pixel_key;
 use super::scatter::{Bounce, mis_weight};
@@ -214,6 +214,9 @@ fn emission(wave: &mut Wave, bounce: Bounce) {
             wave.slots.add(slot, throughput * background);
         }
     }
+    if scene.needs.environment {
+        miss(wave, bounce);
+    }
     for &i in &wave.groups.at_emitters {
         let i = i as usize;
         let slot = wave.paths.slot[i] as usize;
@@ -231,17 +234,38 @@ fn emission(wave: &mut Wave, bounce: Bounce) {
         }
         let uv = [wave.surfaces.uv[0][i], wave.surfaces.uv[1][i]];
         let emitted = emitted(scene, material, &Place::of_hit(&wave.hits, i, uv));
-        let mut weight = 1.0;
-        let pdf = wave.paths.pdf[i];
-        if options.nee && pdf > 0.0 {
+        let weight = share(options, wave.paths.pdf[i], || {
             let (from, t) = wave.leg(i);
-            let light = light_pdf(scene, from, (dir, t), (wave.hits.prim[i], ng), mean);
-            weight = match options.mis {
-                true => mis_weight(pdf, light),
-                false => f32::from(u8::from(light == 0.0)),
-            };
-        }
+            light_pdf(scene, from, (dir, t), (wave.hits.prim[i], ng), mean)
+        });
         wave.slots.add(slot, throughput * emitted * weight);
+    }
+}
+
+/// What directions that met nothing see of the sky.
+#[inline(never)]
+fn miss(wave: &mut Wave, bounce: Bounce) {
+    let Bounce { scene, options, .. } = bounce;
+    for &i in &wave.groups.missed {
+        let i = i as usize;
+        let Seen { radiance, pdf } = see(scene, get(&wave.paths.rays.dir, i));
+        let weight = share(options, wave.paths.pdf[i], || pdf);
+        let throughput = get(&wave.paths.throughput, i);
+        let slot = wave.paths.slot[i] as usize;
+        wave.slots.add(slot, throughput * radiance * weight);
+    }
+}
+
+/// The weight of light that a path found by itself, in a direction of density `pdf` (0 where no light sample competes),
+/// and that a light sample would have found with the density `light`.
+#[inline(always)]
+fn share(options: &TraceOptions, pdf: f32, light: impl FnOnce() -> f32) -> f32 {
+    if !options.nee || pdf <= 0.0 {
+        return 1.0;
+    }
+    match (options.mis, light()) {
+        (true, light) => mis_weight(pdf, light),
+        (false, light) => f32::from(u8::from(light == 0.0)),
     }
 }
 

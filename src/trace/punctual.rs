@@ -12,10 +12,9 @@ pub(super) fn sample_punctual(
     from: Vec3,
     chosen: usize,
 ) -> Option<LightSample<f32>> {
-    let below = chosen.checked_sub(1).map_or(0.0, |k| lights.cumulative[k]);
-    let probability = (lights.cumulative[chosen] - below) / lights.total();
-    let others = lights.len() - lights.punctual.len();
-    let (to, irradiance, t_max) = match &lights.punctual[chosen - others] {
+    let probability = lights.share(chosen);
+    let first = lights.spheres.len() + lights.triangles.area.len();
+    let (to, irradiance, t_max) = match &lights.punctual[chosen - first] {
         Punctual::Sun {
             to_light,
             irradiance,

@@ -1,6 +1,6 @@
 //! The components of an entity. All but [`Pose`] are authored; `pose` writes that one.
 
-use crate::asset::{Filter, MeshId, TextureId, Wrap};
+use crate::asset::{Filter, MeshId, PanoramaId, TextureId, Wrap};
 pub use crate::asset::{Light, Scattering};
 use crate::math::{DAffine3, DMat3, DQuat, DVec3};
 use hecs::Entity;
@@ -95,6 +95,19 @@ pub enum Color {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Emissive(pub [f64; 3]);
 
+/// Radiance from infinitely far away, by direction. Where its entity stands does not concern it, nor how that is turned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sky {
+    /// Of the store. Its middle is towards +Z, its top towards +Y; seen from below, it is unmirrored.
+    pub image: PanoramaId,
+    /// Turns it about +Y, counter-clockwise seen from above.
+    pub rotate_deg: f64,
+    /// Multiplies its radiance.
+    pub strength: f64,
+    /// Between texels.
+    pub filter: Filter,
+}
+
 /// A camera at the entity's origin, looking along its −Z with its Y up; scale does not concern it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
@@ -170,7 +183,7 @@ pub struct Turn {
 /// The order of a scene: first by entity, then by node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct AuthoringIndex {
-    /// Index of the entity in the scene file. A camera at top level comes after all entities.
+    /// Index of the entity in the scene file. A camera at top level, and the sky, come after all entities.
     pub entity: u32,
     /// 0 for the entity itself; for the nodes of its glTF file, 1 and up in the order of the walk.
     pub node: u32,

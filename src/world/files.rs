@@ -1,7 +1,7 @@
 //! Files that a scene names: loaded once each, their errors at the place that names them.
 
 use super::codes;
-use crate::asset::{AssetStore, Loader, MeshId, ModelId, TextureId};
+use crate::asset::{AssetStore, Loader, MeshId, ModelId, Panorama, PanoramaId, TextureId};
 use crate::diag::{Diagnostic, Lines};
 use crate::scene::{Placed, SceneDesc};
 use std::collections::BTreeSet;
@@ -85,6 +85,14 @@ impl<'a> Files<'a> {
         let path = self.path(named);
         let loaded = self.loader.texture(&path).map_err(|e| vec![e]);
         self.keep(loaded, path, named)
+    }
+
+    /// An image of the sky, which is there to be looked at already.
+    pub(super) fn panorama(&mut self, named: &Placed<String>) -> Option<(PanoramaId, &Panorama)> {
+        let path = self.path(named);
+        let loaded = self.loader.panorama(&path).map_err(|e| vec![e]);
+        let id = self.keep(loaded, path, named)?;
+        Some((id, self.loader.loaded_panorama(id)))
     }
 
     /// Reports something about the place that names a file.

@@ -16,7 +16,7 @@ mod track;
 
 pub use components::{
     AuthoringIndex, Camera, Color, Ease, Emissive, Keys, Light, Material, Name, Normals, Parent,
-    Pose, Scattering, Shape, Spin, Track, Transform, Turn,
+    Pose, Scattering, Shape, Sky, Spin, Track, Transform, Turn,
 };
 pub use pose::{Time, pose, poses};
 pub use spawn::{Spawned, open_files, spawn};

@@ -2,16 +2,16 @@
 
 use super::components::{
     AuthoringIndex, Camera, Color, Ease, Emissive, Keys, Material, Name, Normals, Parent,
-    Scattering, Shape, Spin, Track, Transform, Turn,
+    Scattering, Shape, Sky, Spin, Track, Transform, Turn,
 };
 use super::expand::{self, Root, expand};
 use super::{Pose, codes, files::Files, pose};
-use crate::asset::{AssetStore, Filter, Light, Loader, Mesh, MeshId, ModelId, Wrap};
+use crate::asset::{AssetStore, Filter, Light, Loader, MAX_RADIANCE, Mesh, MeshId, ModelId, Wrap};
 use crate::diag::{self, Diagnostic, Severity};
 use crate::math::{DMat3, DVec3, axis_angle_deg, euler_deg, quaternion, unit};
 use crate::scene::{
-    CameraDesc, CameraPose, ColorDesc, EaseDesc, EntityDesc, GltfDesc, KeyDesc, KeysDesc,
-    LightDesc, MaterialDesc, NormalsDesc, Placed, RotateDesc, SceneDesc, ShapeDesc,
+    BackgroundDesc, CameraDesc, CameraPose, ColorDesc, EaseDesc, EntityDesc, GltfDesc, KeyDesc,
+    KeysDesc, LightDesc, MaterialDesc, NormalsDesc, Placed, RotateDesc, SceneDesc, ShapeDesc,
     TextureFilterDesc, TransformDesc, WrapDesc,
 };
 use hecs::{Entity, EntityBuilder, World};
@@ -45,6 +45,7 @@ pub fn spawn(desc: &SceneDesc, loader: Loader) -> Result<Spawned, Vec<Diagnostic
         .iter()
         .map(|entity| Source::load(&entity.value, &mut files))
         .collect();
+    let sky = sky(desc, &mut files);
     let (assets, mut warnings, mut errors) = files.finish();
 
     let mut world = World::new();
@@ -86,13 +87,16 @@ pub fn spawn(desc: &SceneDesc, loader: Loader) -> Result<Spawned, Vec<Diagnostic
             }
         }
     }
+    let last = AuthoringIndex {
+        entity: desc.entities.len() as u32,
+        node: 0,
+    };
+    if let Some(sky) = sky {
+        world.spawn((AuthoringIndex { node: 1, ..last }, sky));
+    }
     if let Some(camera) = &desc.camera {
-        let index = AuthoringIndex {
-            entity: desc.entities.len() as u32,
-            node: 0,
-        };
         world.spawn((
-            index,
+            last,
             camera_transform(camera.pose.as_ref()),
             camera_of(camera),
         ));
@@ -132,6 +136,7 @@ pub fn open_files(desc: &SceneDesc, loader: Loader) -> Vec<Diagnostic> {
     for entity in &desc.entities {
         Source::load(&entity.value, &mut files);
     }
+    sky(desc, &mut files);
     let (_, warnings, mut found) = files.finish();
     found.extend(warnings);
     found
@@ -359,21 +364,39 @@ fn material(desc: &MaterialDesc, files: &mut Files) -> Option<Material> {
                 WrapDesc::Mirror => Wrap::Mirror,
                 WrapDesc::Clamp => Wrap::Clamp,
             },
-            filter: match filter {
-                TextureFilterDesc::Bilinear => Filter::Bilinear,
-                TextureFilterDesc::Nearest => Filter::Nearest,
-            },
+            filter: texture_filter(*filter),
         },
-        ColorDesc::Hdr(path) => {
-            files.refuse(
-                path,
-                diag::codes::NOT_YET,
-                "a material cannot have an HDR image yet",
-            );
-            return None;
-        }
     };
     Some(Material { scattering, color })
+}
+
+fn texture_filter(desc: TextureFilterDesc) -> Filter {
+    match desc {
+        TextureFilterDesc::Bilinear => Filter::Bilinear,
+        TextureFilterDesc::Nearest => Filter::Nearest,
+    }
+}
+
+/// The background, if it is an image.
+fn sky(desc: &SceneDesc, files: &mut Files) -> Option<Sky> {
+    let BackgroundDesc::Hdr(hdr) = &desc.background else {
+        return None;
+    };
+    let (image, panorama) = files.panorama(&hdr.path)?;
+    let brightest = hdr.strength * f64::from(panorama.brightest());
+    if brightest > f64::from(MAX_RADIANCE) {
+        let says = format!(
+            "its brightest pixel, times its `strength`, is {brightest:e}: radiance is from 0 to {MAX_RADIANCE:e}"
+        );
+        files.refuse(&hdr.path, diag::codes::OUT_OF_RANGE, &says);
+        return None;
+    }
+    Some(Sky {
+        image,
+        rotate_deg: hdr.rotate_deg,
+        strength: hdr.strength,
+        filter: texture_filter(hdr.filter),
+    })
 }
 
 /// The images that the materials of a scene name, in their order.
@@ -391,7 +414,7 @@ fn image(material: &MaterialDesc) -> Option<&Placed<String>> {
     | Metal { color, .. }) = material;
     match color {
         ColorDesc::Image { path, .. } => Some(path),
-        ColorDesc::Linear(_) | ColorDesc::Hdr(_) => None,
+        ColorDesc::Linear(_) => None,
     }
 }
 

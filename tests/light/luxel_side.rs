@@ -81,6 +81,17 @@ impl Stage {
         self
     }
 
+    /// Writes a Radiance HDR image that the scene names.
+    pub(crate) fn hdr(self, name: &str, texels: &[[f32; 3]], width: usize) -> Stage {
+        let texels: Vec<image::Rgb<f32>> = texels.iter().map(|t| image::Rgb(*t)).collect();
+        let mut bytes = Vec::new();
+        image::codecs::hdr::HdrEncoder::new(&mut bytes)
+            .encode(&texels, width, texels.len() / width)
+            .expect("a scratch sky");
+        std::fs::write(self.folder.join(name), bytes).expect("a scratch file");
+        self
+    }
+
     /// As luxel reads it.
     pub(crate) fn describe(&self) -> SceneDesc {
         match luxel::scene::parse(&self.text, &self.folder.join("scene.ron")) {

@@ -24,6 +24,7 @@ mod punctual;
 mod radiance;
 mod self_check;
 mod shadows;
+mod sky;
 mod stats;
 mod textures;
 mod veils;

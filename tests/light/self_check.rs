@@ -2,8 +2,8 @@
 
 use crate::closed;
 use crate::reference::{
-    Camera, Color, Estimator, Filter, Kind, Material, Scene, Shape, Surface, internal_reflectance,
-    render,
+    Camera, Color, Estimator, Filter, Kind, Material, Scene, Shape, Sky, Surface,
+    internal_reflectance, render,
 };
 use crate::stats::{Mean, assert_mean};
 use glam::{DMat3, DVec2, DVec3};
@@ -86,7 +86,7 @@ fn a_sphere_lights_a_plane_by_chance_and_by_area() {
                 surface(ball(lamp, 4.0 * s, false), Kind::Nothing, 0.0, 1.0),
             ],
             bulbs: Vec::new(),
-            background: DVec3::ZERO,
+            background: Sky::Flat(DVec3::ZERO),
             camera: spot(DVec3::new(-0.4, 0.3, 0.1), DVec3::ZERO),
         };
         let truth = 0.5 * closed::sphere_light(theta, s);
@@ -108,7 +108,7 @@ fn a_room_multiplies_light() {
             surface(ball(DVec3::ZERO, 1.0, false), Kind::Diffuse, inner, 1.0),
         ],
         bulbs: Vec::new(),
-        background: DVec3::ZERO,
+        background: Sky::Flat(DVec3::ZERO),
         camera: spot(DVec3::new(0.0, 0.0, 1.5), DVec3::new(0.0, 0.0, 9.0)),
     };
     let (_, truth) = closed::concentric(0.5, 1.0, 0.3, 0.8);
@@ -140,7 +140,7 @@ fn white_things_vanish_in_a_white_sky() {
         let scene = Scene {
             surfaces: vec![surface(ball(DVec3::ZERO, 1.0, false), kind, 1.0, 0.0)],
             bulbs: Vec::new(),
-            background: DVec3::ONE,
+            background: Sky::Flat(DVec3::ONE),
             camera: Camera {
                 slope: 0.3,
                 ..spot(DVec3::new(0.0, 1.0, 4.0), DVec3::ZERO)

@@ -3,13 +3,13 @@
 //! Understands what the tests use: a camera at top level or on an entity, meshes with file normals or `Flat`, materials on the entity.
 
 use super::{
-    Bulb, Camera, Color, Filter, Image, Kind, Material, Scene, Shape, Surface, Wrap,
+    Bulb, Camera, Color, Filter, Image, Kind, Material, Scene, Shape, Sky, Surface, Wrap,
     internal_reflectance, obj,
 };
 use glam::{DMat3, DVec3};
 use luxel::scene::{
-    CameraDesc, ColorDesc, EntityDesc, FilterDesc, LightDesc, MaterialDesc, NormalsDesc,
-    RotateDesc, SceneDesc, ShapeDesc, TextureFilterDesc, WrapDesc,
+    BackgroundDesc, CameraDesc, ColorDesc, EntityDesc, FilterDesc, LightDesc, MaterialDesc,
+    NormalsDesc, RotateDesc, SceneDesc, ShapeDesc, TextureFilterDesc, WrapDesc,
 };
 use std::path::Path;
 use std::rc::Rc;
@@ -80,8 +80,28 @@ pub(crate) fn scene(desc: &SceneDesc, frame: u32) -> Scene {
     Scene {
         surfaces,
         bulbs,
-        background: constant(&desc.background),
+        background: background(&desc.background, folder),
         camera: camera(desc, time),
+    }
+}
+
+fn background(desc: &BackgroundDesc, folder: &Path) -> Sky {
+    let hdr = match desc {
+        BackgroundDesc::Linear(rgb) => return Sky::Flat(DVec3::from(*rgb)),
+        BackgroundDesc::Hdr(hdr) => hdr,
+    };
+    let file = image::open(folder.join(&hdr.path.value)).expect("the sky of a test");
+    let rgb = file.to_rgb32f();
+    let texels = rgb.pixels().map(|p| DVec3::from(p.0.map(f64::from)));
+    Sky::Image {
+        image: Image {
+            texels: texels.collect(),
+            wrap: [Wrap::Repeat, Wrap::Clamp],
+            bilinear: hdr.filter == TextureFilterDesc::Bilinear,
+            factor: DVec3::splat(hdr.strength),
+            ..Image::from_srgb(&[], rgb.width() as usize, rgb.height() as usize)
+        },
+        turned: turn(DVec3::Y, hdr.rotate_deg),
     }
 }
 

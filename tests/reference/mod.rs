@@ -14,6 +14,7 @@ mod camera;
 mod obj;
 mod random;
 mod shape;
+mod sky;
 mod trace;
 
 pub(crate) use bsdf::{dielectric, internal_reflectance};
@@ -21,6 +22,7 @@ pub(crate) use bulb::Bulb;
 pub(crate) use camera::{Camera, Filter};
 pub(crate) use random::Random;
 pub(crate) use shape::{Corners, Hit, Shape, closest};
+pub(crate) use sky::Sky;
 pub(crate) use trace::{Estimator, render};
 
 use glam::{DAffine2, DVec2, DVec3};
@@ -30,7 +32,7 @@ use std::rc::Rc;
 pub(crate) struct Scene {
     pub(crate) surfaces: Vec<Surface>,
     pub(crate) bulbs: Vec<Bulb>,
-    pub(crate) background: DVec3,
+    pub(crate) background: Sky,
     pub(crate) camera: Camera,
 }
 

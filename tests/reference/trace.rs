@@ -70,7 +70,7 @@ fn radiance(
     for bounce in 0..=max_bounces {
         let hit = loop {
             let Some(hit) = closest(scene, &ray) else {
-                return sum + throughput * scene.background;
+                return sum + throughput * scene.background.at(ray.dir);
             };
             let presence = scene.surfaces[hit.surface].presence(&hit);
             if presence == 1.0 || random.unit() < presence {

@@ -211,6 +211,7 @@ pub fn empty_scene() -> FlatScene {
         textures: Vec::new(),
         lights: Lights::default(),
         background: [0.0; 3],
+        environment: None,
         camera: Camera {
             origin: [0.0; 3],
             right: [1.0, 0.0, 0.0],

@@ -192,6 +192,7 @@ impl Subject {
             textures: Vec::new(),
             lights: Lights::default(),
             background: [0.0; 3],
+            environment: None,
             camera: UNUSED_CAMERA,
             rebase: Rebase {
                 origin: [0.0; 3],

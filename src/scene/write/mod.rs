@@ -12,9 +12,10 @@ mod text;
 mod tests;
 
 use super::schema::{
-    AnimationDesc, CameraDesc, CameraPose, ColorDesc, EaseDesc, EntityDesc, FilterDesc, GltfDesc,
-    KeyDesc, KeysDesc, LightDesc, MaterialDesc, NormalsDesc, RenderDesc, RotateDesc, SceneDesc,
-    ShapeDesc, SpinDesc, TextureFilterDesc, TransformDesc, WrapDesc,
+    AnimationDesc, BackgroundDesc, CameraDesc, CameraPose, ColorDesc, EaseDesc, EntityDesc,
+    FilterDesc, GltfDesc, HdrDesc, KeyDesc, KeysDesc, LightDesc, MaterialDesc, NormalsDesc,
+    RenderDesc, RotateDesc, SceneDesc, ShapeDesc, SpinDesc, TextureFilterDesc, TransformDesc,
+    WrapDesc,
 };
 use super::{VERSION, srgb};
 use std::fmt::Write;
@@ -34,8 +35,8 @@ pub fn write(desc: &SceneDesc) -> String {
     if desc.render != RenderDesc::default() {
         section("render", &render(&desc.render));
     }
-    if desc.background != ColorDesc::Linear(SceneDesc::BACKGROUND) {
-        section("background", &color(&desc.background));
+    if desc.background != BackgroundDesc::Linear(SceneDesc::BACKGROUND) {
+        section("background", &background(&desc.background));
     }
     if !desc.materials.is_empty() {
         section("materials", &materials(desc));
@@ -154,17 +155,37 @@ fn material(material: &MaterialDesc) -> String {
     .close_variant(variant)
 }
 
-fn color(color: &ColorDesc) -> String {
+fn background(background: &BackgroundDesc) -> String {
+    let hdr = match background {
+        BackgroundDesc::Linear(rgb) => return linear(rgb),
+        BackgroundDesc::Hdr(hdr) => hdr,
+    };
+    let fields = Fields::default()
+        .number_unless(HdrDesc::ROTATE_DEG, "rotate_deg", hdr.rotate_deg)
+        .number_unless(HdrDesc::STRENGTH, "strength", hdr.strength)
+        .unless(&TextureFilterDesc::default(), "filter", &hdr.filter, |f| {
+            format!("{f:?}")
+        });
+    if fields.0.is_empty() {
+        return format!("Hdr({:?})", hdr.path.value);
+    }
+    let path = format!("path: {:?}", hdr.path.value);
+    Fields([vec![path], fields.0].concat()).close_variant("Hdr")
+}
+
+fn linear(rgb: &[f64; 3]) -> String {
     /// Numbers that a person would write make a shorter text than this.
     const LONG: usize = 24;
+    let linear = format!("Linear{}", vector(rgb));
+    match srgb::encode_hex(*rgb) {
+        Some(hex) if linear.len() > LONG => format!("Srgb({hex:?})"),
+        _ => linear,
+    }
+}
+
+fn color(color: &ColorDesc) -> String {
     match color {
-        ColorDesc::Linear(rgb) => {
-            let linear = format!("Linear{}", vector(rgb));
-            match srgb::encode_hex(*rgb) {
-                Some(hex) if linear.len() > LONG => format!("Srgb({hex:?})"),
-                _ => linear,
-            }
-        }
+        ColorDesc::Linear(rgb) => linear(rgb),
         ColorDesc::Image { path, wrap, filter } => {
             let fields = Fields::default()
                 .unless(&WrapDesc::default(), "wrap", wrap, |w| format!("{w:?}"))
@@ -178,7 +199,6 @@ fn color(color: &ColorDesc) -> String {
                 Fields([vec![path], fields.0].concat()).close_variant("Image")
             }
         }
-        ColorDesc::Hdr(path) => format!("Hdr({:?})", path.value),
     }
 }
 

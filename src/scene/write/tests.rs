@@ -15,7 +15,9 @@ fn read(text: &str) -> SceneDesc {
 fn content(desc: &SceneDesc) -> String {
     let mut desc = desc.clone();
     desc.source = "".into();
-    forget_path(&mut desc.background);
+    if let BackgroundDesc::Hdr(hdr) = &mut desc.background {
+        (hdr.path.at, hdr.path.len) = (0, 0);
+    }
     for named in &mut desc.materials {
         (named.at, named.len) = (0, 0);
         let (MaterialDesc::Diffuse { color }
@@ -38,7 +40,7 @@ fn content(desc: &SceneDesc) -> String {
 }
 
 fn forget_path(color: &mut ColorDesc) {
-    if let ColorDesc::Image { path, .. } | ColorDesc::Hdr(path) = color {
+    if let ColorDesc::Image { path, .. } = color {
         (path.at, path.len) = (0, 0);
     }
 }
@@ -139,6 +141,15 @@ fn every_variant_and_awkward_value_survives() {
         ],
         animation: (fps: 29.97, frames: 3..9))"##,
     ));
+    for sky in [
+        r#"Hdr("a sky.hdr")"#,
+        r#"Hdr(path: "sky.exr", rotate_deg: -90, strength: 2.5, filter: Nearest)"#,
+        r#"Hdr(path: "sky.exr", strength: 0)"#,
+    ] {
+        let camera = "camera: (at: (0, 0, 1), look_at: (0, 0, 0))";
+        let text = format!("(version: 1, {camera}, background: {sky})");
+        assert!(assert_round_trip(&read(&text)).contains(sky), "{sky}");
+    }
     assert_round_trip(&read(
         "(version: 1, camera: (at: (1, 2, 3), look_at: (0, 0, 0.1), up: (1, 0, 0), vfov_deg: 1e-3,
           lens: (aperture_radius: 0.1)), render: (filter: Box))",

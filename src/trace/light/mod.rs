@@ -1,8 +1,10 @@
 //! Lights: choosing a point on one, and the density with which a given point would have been chosen.
 //!
 //! A light is chosen by its share of the table's weights; then a point of a triangle uniformly by area, of a sphere
-//! uniformly in the solid angle that it fills. A light without extent has one direction, which nothing else finds.
+//! uniformly in the solid angle that it fills; a direction of the sky by its own table. A light without extent has one
+//! direction, which nothing else finds.
 
+mod environment;
 mod sphere;
 
 use super::attributes::light_radiance;
@@ -12,6 +14,8 @@ use super::vector::{V3, unit};
 use crate::flat::{FlatScene, LightTriangles, Lights, Spheres};
 use crate::math::Vec3;
 use crate::math::lanes::BitLanes;
+use environment::sample_environment;
+pub(super) use environment::{Seen, see};
 use sphere::{Chosen, sample_spheres, sphere_pdf};
 
 /// Shadow rays stop short of the light by this factor, four units in the last place: the light's own hit, whose t is
@@ -132,7 +136,12 @@ fn sample_light(
     }
     let (i, triangles) = (chosen - lights.spheres.len(), &lights.triangles);
     if i >= triangles.area.len() {
-        return sample_punctual(lights, from, chosen);
+        return match &scene.environment {
+            Some(sky) if lights.environment && chosen + 1 == lights.len() => {
+                sample_environment(sky, lights.share(chosen), u)
+            }
+            _ => sample_punctual(lights, from, chosen),
+        };
     }
     let mut sample = sample_triangle(triangles, from, i, u, total)?;
     if let Some(place) = triangles.place.get(i) {
