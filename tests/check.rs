@@ -398,6 +398,85 @@ fn files_that_do_not_fit_the_scene() {
     }
 }
 
+/// What is wrong with the image of a sky is told where the scene names it.
+#[test]
+fn skies_are_checked_where_they_are_named() {
+    let scene = |hdr: &str| {
+        let camera = "camera: (at: (3, 2, 9), look_at: (0, 0, 0))";
+        let ball = "entities: [(shape: Sphere(radius: 1))]";
+        format!("(version: 1, {camera},\nbackground: Hdr({hdr}), {ball})")
+    };
+    let scenes = [
+        ("missing.ron", scene("\"skye.hdr\"")),
+        ("other.ron", scene("\"other.hdr\"")),
+        ("cut.ron", scene("\"cut.hdr\"")),
+        ("negative.ron", scene("\"negative.exr\"")),
+        ("square.ron", scene("\"square.hdr\"")),
+        ("strong.ron", scene("path: \"sky.hdr\", strength: 1e18")),
+        ("black.ron", scene("\"black.hdr\"")),
+        ("dark.ron", scene("path: \"sky.hdr\", strength: 0")),
+        ("good.ron", scene("\"sky.hdr\"")),
+    ];
+    let mut files: Vec<(&str, &str)> = scenes.iter().map(|(n, t)| (*n, t.as_str())).collect();
+    files.push(("other.hdr", "no image at all"));
+    let folder = Folder::of("skies", &files);
+    let hdr = |name: &str, width: usize, texel: [f32; 3]| {
+        let mut bytes = Vec::new();
+        image::codecs::hdr::HdrEncoder::new(&mut bytes)
+            .encode(&vec![image::Rgb(texel); width], width, 1)
+            .expect("an HDR image");
+        fs::write(folder.0.join(name), &bytes).expect("writable");
+        bytes
+    };
+    let whole = hdr("sky.hdr", 2, [1.0, 2.0, 3.0]);
+    fs::write(folder.0.join("cut.hdr"), &whole[..whole.len() - 1]).expect("writable");
+    hdr("square.hdr", 1, [1.0; 3]);
+    hdr("black.hdr", 2, [0.0; 3]);
+    let negative = |_, _| (1.0f32, -1.0f32, 1.0f32);
+    exr::prelude::write_rgb_file(folder.0.join("negative.exr"), 2, 1, negative).expect("writable");
+    for (name, code, words) in [
+        ("missing.ron", "E101", "did you mean \"sky.hdr\""),
+        ("other.ron", "E107", "neither"),
+        ("cut.ron", "E108", "damaged"),
+        ("negative.ron", "E112", "oiiotool"),
+        ("square.ron", "W119", "1 x 1"),
+        ("strong.ron", "E011", "strength"),
+        ("black.ron", "W001", "black"),
+        ("dark.ron", "W001", "black"),
+    ] {
+        let (exit, json) = folder.json(name);
+        assert_eq!(codes(&json), [code], "{name}: {json:#}");
+        assert_eq!(exit, if code.starts_with('E') { 65 } else { 0 }, "{name}");
+        let found = &json["diagnostics"][0];
+        assert!(
+            found.to_string().contains(&words.replace('"', "\\\"")),
+            "{found:#}"
+        );
+        if code.starts_with('E') {
+            assert_eq!(
+                (&found["file"], &found["line"]),
+                (&name.into(), &2.into()),
+                "{found:#}"
+            );
+        }
+    }
+    let (exit, json) = folder.json("good.ron");
+    assert_eq!((exit, codes(&json)), (0, Vec::new()), "{json:#}");
+    // It counts for the hash of the scene, and for the memory that files may take.
+    let explained = |file: &str| text(&folder.run(&["explain", "--json", file]).stdout);
+    let before = explained("good.ron");
+    for word in ["sky texels", "sky row sums", "\"sky\""] {
+        assert!(before.contains(word), "no {word} in {before}");
+    }
+    let hash = |text: &str| {
+        serde_json::from_str::<serde_json::Value>(text)
+            .map(|v| v["hash"].to_string())
+            .ok()
+    };
+    hdr("sky.hdr", 2, [1.0, 2.0, 4.0]);
+    assert!(hash(&before).is_some() && hash(&explained("good.ron")) != hash(&before));
+}
+
 /// Each mesh of the given data before a camera that fits: nothing is said of the scene as a whole.
 #[test]
 fn plain_files_give_no_false_alarm() {

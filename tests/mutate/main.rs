@@ -221,12 +221,17 @@ impl Mutants {
         }
         let name = format!("a.{suffix}");
         write(&name, &bytes);
+        let background = match suffix {
+            "hdr" | "exr" => format!("Hdr({name:?})"),
+            _ => "Linear(1, 1, 1)".to_owned(),
+        };
         let (image, entity) = match suffix {
             "obj" => (String::new(), format!("(shape: Mesh({name:?}))")),
             "mtl" => {
                 write("b.obj", &triangle_of_each_material(&bytes));
                 (String::new(), "(shape: Mesh(\"b.obj\"))".to_owned())
             }
+            "hdr" | "exr" => (String::new(), "(shape: Sphere(radius: 1))".to_owned()),
             "gltf" | "glb" => (String::new(), format!("(gltf: {name:?})")),
             _ => (
                 format!("\"image\": Diffuse(color: Texture({name:?}))"),
@@ -234,7 +239,7 @@ impl Mutants {
             ),
         };
         let text = format!(
-            "Scene(version: 1, camera: (at: (1, 2, 5), look_at: (0, 0, 0)), background: Linear(1, 1, 1),\n\
+            "Scene(version: 1, camera: (at: (1, 2, 5), look_at: (0, 0, 0)), background: {background},\n\
              materials: {{ {image} }}, entities: [{entity}])"
         );
         (text.into_bytes(), beside.join("scene.ron"))

@@ -4,7 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Kinds of file that are damaged, by their ending. A reader that is new adds its own here.
-pub(crate) const SUFFIXES: [&str; 8] = ["obj", "mtl", "gltf", "glb", "png", "jpg", "jpeg", "ron"];
+pub(crate) const SUFFIXES: [&str; 10] = [
+    "obj", "mtl", "gltf", "glb", "png", "jpg", "jpeg", "hdr", "exr", "ron",
+];
 
 /// Larger files are left out: what they have that small ones have not is only more of the same.
 const MAX_BYTES: u64 = 1 << 16;
@@ -97,6 +99,7 @@ fn small() -> impl Iterator<Item = Seed> {
         .into_iter()
         .chain(images.map(|bytes| seed("png", bytes)))
         .chain([seed("jpg", photo()), seed("glb", glb())])
+        .chain([seed("hdr", hdr()), seed("exr", exr())])
 }
 
 /// [`GLTF`] with its buffer, and an image in it, as the binary chunk.
@@ -170,6 +173,30 @@ fn photo() -> Vec<u8> {
     let color = image::ExtendedColorType::Rgb8;
     encoder.encode(&texels, SIDE, SIDE, color).expect("a JPEG");
     bytes
+}
+
+fn hdr() -> Vec<u8> {
+    let texels: Vec<_> = (0..128).map(|i| image::Rgb([i as f32, 0.5, 1.0])).collect();
+    let mut bytes = Vec::new();
+    let encoder = image::codecs::hdr::HdrEncoder::new(&mut bytes);
+    encoder.encode(&texels, 16, 8).expect("an HDR image");
+    bytes
+}
+
+fn exr() -> Vec<u8> {
+    use exr::prelude::*;
+    let texels =
+        SpecificChannels::rgb(|at: Vec2<usize>| (at.x() as f32, 0.5f32, f16::from_f32(1.0)));
+    let layer = Layer::new(
+        (16, 8),
+        LayerAttributes::named("sky"),
+        Encoding::SMALL_LOSSLESS,
+        texels,
+    );
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let written = Image::from_layer(layer).write().to_buffered(&mut bytes);
+    written.expect("an EXR image");
+    bytes.into_inner()
 }
 
 pub(crate) const OBJ: &str = "mtllib m.mtl\no a\nv 0 0 0\nv 1 0 0.5\nv 1 1 0 1\nv 0 1 0 0.2 0.3 0.4\nv 0.5 0.5 2\nvt 0 0\nvt 1 0.5\n\
