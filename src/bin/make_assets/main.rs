@@ -1,8 +1,9 @@
 //! Writes the project's own assets, byte for byte the same on every machine: `make_assets [--cat-triangles N] [-o DIR]`.
 //!
 //! The cat is an implicit surface ([`shape`]), meshed ([`net`]), unwrapped ([`unwrap`]) and painted ([`coat`],
-//! [`paint`]); [`simple`] holds the small test assets, [`lattice`] a screen with holes, [`gear`] gears. What this writes with its defaults into `assets/` is committed;
-//! a finer cat is made on demand into a folder of its own. No transcendental function, no hash order and no clock.
+//! [`paint`]); [`simple`] holds the small test assets, [`lattice`] a screen with holes, [`gear`] gears, [`sky`] an
+//! afternoon. What this writes with its defaults into `assets/` is committed; a finer cat is made on demand into a folder of
+//! its own. No transcendental function but luxel's own, no hash order and no clock.
 
 mod coat;
 mod gear;
@@ -12,6 +13,7 @@ mod obj;
 mod paint;
 mod shape;
 mod simple;
+mod sky;
 mod unwrap;
 
 #[cfg(test)]
@@ -79,6 +81,7 @@ fn assets(cat_triangles: usize) -> io::Result<Vec<(&'static str, Vec<u8>)>> {
         ("plinth.mtl", simple::PLINTH_MTL.into()),
         ("seam_cube.obj", simple::SEAM_CUBE.into()),
         ("seam_cube.mtl", simple::SEAM_CUBE_MTL.into()),
+        ("sky.hdr", sky::sky()),
         (
             "uv_test.png",
             png(simple::UV_TEST_SIZE, &simple::uv_test())?,
