@@ -6,7 +6,7 @@
 //! [`fall`] follows an image's error while it is rendered.
 //!
 //! [`referee`] asks the same of what rays hit, [`exactness`] what being right costs, and [`stability`] what becomes of a
-//! scene at other sizes and places.
+//! scene at other sizes and places. [`tune`] measures what a scene's dials cost and err.
 //!
 //! Deliberately absent: the arguments and words of `luxel compare`, the verdict on what error is too much, and any
 //! alignment, scaling or exposure that would make images more alike than they are.
@@ -22,6 +22,8 @@ mod image;
 mod pair;
 pub mod referee;
 pub mod stability;
+mod svg;
+pub mod tune;
 
 pub use self::errors::{Bias, Errors, Maximum, errors, relative_squared};
 pub use self::image::{Image, ReadError};

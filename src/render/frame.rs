@@ -69,6 +69,15 @@ impl Renderer {
         })
     }
 
+    /// Starts anew with other settings on the same threads: the next build is a first one. `desc` and `store` are those
+    /// that it was made with.
+    pub fn change(&mut self, desc: &SceneDesc, store: &AssetStore, settings: Settings) {
+        let options = build_options(desc, &settings);
+        self.filter = options.filter;
+        self.builder = SceneBuilder::new(&self.world, store, options);
+        self.settings = settings;
+    }
+
     /// SHA-256 of the scene and of every file that it names, in hexadecimal.
     #[must_use]
     pub fn hash(&self) -> &str {
@@ -79,6 +88,12 @@ impl Renderer {
     #[must_use]
     pub fn settings(&self) -> &Settings {
         &self.settings
+    }
+
+    /// How many threads work.
+    #[must_use]
+    pub fn threads(&self) -> usize {
+        self.pool.current_num_threads()
     }
 
     /// Gives the world back.
@@ -148,7 +163,8 @@ impl Renderer {
     ) -> Rendering {
         let deadline = self.settings.time.map(Deadline::after);
         let (scene, times) = self.build(frame);
-        let (film, non_finite, mut stats) = self.trace(&scene, frame, control, deadline, watch);
+        let (film, non_finite, mut stats) =
+            self.trace(&scene, &self.settings, frame, (control, deadline), watch);
         self.builder.give_back(scene);
         stats.bytes = times.bytes;
         stats.stages = Stages {
@@ -166,15 +182,28 @@ impl Renderer {
         }
     }
 
+    /// Traces what [`Renderer::build`] gave, or another renderer's: for those who trace a build with one setting after
+    /// the other. Of `settings`, only samples, tile and the dials of tracing count: size and tree are the build's,
+    /// threads the renderer's.
+    pub fn trace_built(&self, scene: &FlatScene, settings: &Settings) -> (Film, Stats) {
+        let settings = Settings {
+            size: (scene.camera.width, scene.camera.height),
+            noise: None,
+            ..settings.clone()
+        };
+        let limits = (&Control::default(), None);
+        let (film, _, stats) = self.trace(scene, &settings, scene.frame, limits, |_, _, _| ());
+        (film, stats)
+    }
+
     fn trace(
         &self,
         scene: &FlatScene,
+        settings: &Settings,
         frame: u32,
-        control: &Control,
-        deadline: Option<Deadline>,
+        (control, deadline): (&Control, Option<Deadline>),
         mut watch: impl FnMut(&[Tile], u32, Duration) + Send,
     ) -> (Film, Vec<NonFinite>, Stats) {
-        let settings = &self.settings;
         let (width, height) = settings.size;
         let start = Instant::now();
         let verdict = settings

@@ -1,4 +1,4 @@
-//! The clock that rays are timed by.
+//! The clocks that rays and pictures are timed by.
 
 use std::time::Duration;
 
@@ -13,6 +13,19 @@ pub(in crate::measure) fn now() -> Duration {
 #[cfg(not(any(target_os = "linux", target_os = "macos")))]
 pub(in crate::measure) fn now() -> Duration {
     since_start()
+}
+
+/// CPU time of all threads of this process together.
+#[cfg(any(target_os = "linux", target_os = "macos"))]
+pub(in crate::measure) fn of_all_threads(_threads: usize) -> Duration {
+    use nix::time::{ClockId, clock_gettime};
+    clock_gettime(ClockId::CLOCK_PROCESS_CPUTIME_ID).map_or_else(|_| since_start(), Duration::from)
+}
+
+/// Time since the first call, as if all threads had worked all of it.
+#[cfg(not(any(target_os = "linux", target_os = "macos")))]
+pub(in crate::measure) fn of_all_threads(threads: usize) -> Duration {
+    since_start() * u32::try_from(threads).unwrap_or(1)
 }
 
 fn since_start() -> Duration {

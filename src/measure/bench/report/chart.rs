@@ -3,6 +3,7 @@
 use super::super::{RayKind, Record};
 use super::distinct;
 use crate::measure::arms::Layout;
+use crate::measure::svg::{document, text};
 use std::fmt::Write;
 
 /// Pixels. Room for the arms' names on the left.
@@ -35,12 +36,7 @@ pub fn svg(records: &[Record]) -> String {
         top = panels(&mut body, &rows, &kinds, top);
     }
     let [width, height] = [panel(kinds.len()), top + FOOT];
-    format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" \
-         height=\"{height}\" font-family=\"sans-serif\" font-size=\"11\" fill=\"#222\"><style>.t{{font-size:15px;\
-         font-weight:600}}.s{{font-weight:600}}.a{{text-anchor:end}}.n{{fill:#666}}</style>\
-         <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>{body}</svg>\n"
-    )
+    document([width, height], &body)
 }
 
 /// Left edge of a panel.
@@ -93,12 +89,4 @@ fn color(layout: Layout) -> &'static str {
         Layout::Blocks => "#4f779f",
         Layout::Luxel => "#d9822b",
     }
-}
-
-fn text(body: &mut String, [x, y]: [f64; 2], class: &str, words: &str) {
-    let words = words.replace('&', "&amp;").replace('<', "&lt;");
-    let _ = write!(
-        body,
-        "<text x=\"{x:.1}\" y=\"{y:.1}\" class=\"{class}\">{words}</text>"
-    );
 }

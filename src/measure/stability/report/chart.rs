@@ -3,6 +3,7 @@
 use super::super::{Difference, Report, Row};
 use super::power;
 use crate::math::{ln, pow};
+use crate::measure::svg::{document, text};
 use std::fmt::Write;
 
 /// Pixels: a panel, and what stands around it.
@@ -41,13 +42,7 @@ pub fn svg(report: &Report, title: &str) -> String {
         LEFT + 2.0 * PANEL[0] + GAP + 20.0,
         TOP + PANEL[1] + SAME + FOOT,
     ];
-    format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" \
-         height=\"{height}\" font-family=\"sans-serif\" font-size=\"11\" fill=\"#222\"><style>.t{{font-size:15px;\
-         font-weight:600}}.a{{text-anchor:end}}.m{{text-anchor:middle}}.n{{fill:#666}}.w{{fill:#b3261e}}\
-         .k{{font-size:9px}}</style>\
-         <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>{body}</svg>\n"
-    )
+    document([width, height], &body)
 }
 
 fn log10(x: f64) -> f64 {
@@ -145,12 +140,4 @@ fn point(body: &mut String, [x, y]: [f64; 2], row: &Row) {
     if count > 0 {
         text(body, [x, y - 8.0], "m w", &count.to_string());
     }
-}
-
-fn text(body: &mut String, [x, y]: [f64; 2], class: &str, words: &str) {
-    let words = words.replace('&', "&amp;").replace('<', "&lt;");
-    let _ = write!(
-        body,
-        "<text x=\"{x:.1}\" y=\"{y:.1}\" class=\"{class}\">{words}</text>"
-    );
 }
