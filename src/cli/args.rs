@@ -7,6 +7,8 @@ use super::dial_args::DialArgs;
 use super::goal_args::GoalArgs;
 use super::replay_args::ReplayArgs;
 use super::stability_args::StabilityArgs;
+use super::tune_args::TuneArgs;
+use super::tuned::QualityArg;
 use crate::scene::RenderDesc;
 use crate::trace::isa::{Isa, Level};
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
@@ -30,6 +32,7 @@ Examples:
   luxel compare quick.exr reference.exr            how wrong a picture is
   luxel bench                                      how fast rays are traced, and why
   luxel stability room.ron                         what goes wrong with the scene at other sizes and places
+  luxel tune room.ron                              which settings are worth their time: draft, preview, final
 
 Exit codes: 0 done, 1 images differ by more than --max (bench: the arms' hits do; stability: the scene goes wrong), 2 usage, 65 bad scene or image, 66 missing file, 70 bug, 74 i/o, 75 stopped, and the same line goes on, 130 stopped"
 )]
@@ -60,16 +63,19 @@ pub(crate) enum Command {
     Bench(Box<BenchArgs>),
     /// Try a scene at other sizes and places: leaks, self-hits, what goes wrong first
     Stability(StabilityArgs),
+    /// Measure what every dial costs and errs in a scene, and find settings for draft, preview and final
+    Tune(TuneArgs),
 }
 
 /// `luxel render`.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 #[command(after_help = "\
 Examples:
   luxel render room.ron                            room.png, as the scene says
   luxel render room.ron -o room.exr --aov albedo,normal,depth
   luxel render room.ron --noise 1% --time 10m      until it is 1 % wrong, ten minutes at most
   luxel render room.ron --size 128x128 --spp 4     a quick look
+  luxel render room.ron -q preview                 as `luxel tune room.ron` found best
   luxel render room.ron -o - | viewer              PNG on stdout
   luxel render room.ron --replay 0,12,7,3          what sample 3 of pixel (12, 7) of frame 0 met
 
@@ -82,6 +88,9 @@ pub(crate) struct RenderArgs {
     /// Where to write: .png or .exr by its suffix, - is PNG on stdout [default: SCENE.png in this folder]
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
+    /// Settings that `luxel tune` found for this scene and wrote beside it; --spp, --size and --bounces still count
+    #[arg(short, long, value_enum, value_name = "QUALITY", conflicts_with_all = ["sampler", "nee", "mis", "roulette", "fresnel", "accel", "tree"])]
+    pub(crate) quality: Option<QualityArg>,
     /// Samples per pixel [default: the scene's, or as many as --noise and --time take]
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..=i64::from(RenderDesc::MAX_SPP)))]
     pub(crate) spp: Option<u32>,

@@ -62,6 +62,27 @@ impl Failure {
         }
     }
 
+    /// `-q`, and the scene was not tuned.
+    pub(crate) fn untuned(
+        quality: &str,
+        file: &Path,
+        scene: &Path,
+        cause: &dyn fmt::Display,
+    ) -> Failure {
+        let message = format!(
+            "what {quality} means stands in \"{}\", which cannot be read: {cause}",
+            file.display()
+        );
+        let hint = format!(
+            "measure it first, in a minute: luxel tune {}",
+            scene.display()
+        );
+        Failure {
+            code: code::NO_INPUT,
+            what: What::Message(message, Some(hint)),
+        }
+    }
+
     /// The scene is wrong.
     pub(crate) fn scene(diagnostics: Vec<Diagnostic>) -> Failure {
         Failure {

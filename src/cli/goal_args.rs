@@ -4,7 +4,7 @@ use clap::Args;
 use std::path::PathBuf;
 
 /// Part of `luxel render`.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct GoalArgs {
     /// Stop at this relative error of the image: 1% or 0.01. A short pilot, which is not in the image, finds how many samples that
     /// takes

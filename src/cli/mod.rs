@@ -35,6 +35,9 @@ mod stability;
 mod stability_args;
 mod start;
 mod stats;
+mod tune;
+mod tune_args;
+mod tuned;
 mod turntable;
 mod versus;
 mod video;
@@ -62,6 +65,7 @@ pub fn run() -> ExitCode {
         Command::Compare(args) => compare::run(args),
         Command::Bench(args) => bench::run(args),
         Command::Stability(args) => stability::run(args),
+        Command::Tune(args) => tune::run(args),
     };
     match done {
         Ok(()) => ExitCode::from(code::DONE),

@@ -5,6 +5,7 @@ use super::failure::Failure;
 use super::output::{Encoding, Output, check_writable};
 use super::progress::Progress;
 use super::stats::Account;
+use super::tuned::Tuned;
 use super::versus::Versus;
 use super::{advice, diagnostics, interrupt, load, print_result, replay, say};
 use crate::film;
@@ -18,6 +19,8 @@ use std::time::Instant;
 /// Renders one frame and writes it.
 pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let start = Instant::now();
+    let tuned = Tuned::read(args)?;
+    let args = tuned.as_ref().map_or(args, |tuned| &tuned.args);
     if let Some(named) = args.replay.replay {
         let (loaded, _) = load::scene(&args.scene, args.dials.max_memory)?;
         let settings = settings(args, &loaded.desc);
@@ -49,6 +52,9 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
     };
     let files = loaded.memory();
     let mut renderer = loaded.renderer(settings)?;
+    if let Some(tuned) = &tuned {
+        tuned.warn_if_stale(renderer.hash());
+    }
     let load = start.elapsed();
     let rendering = {
         let _bar = Progress::start(&control, time);

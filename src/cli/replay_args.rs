@@ -12,7 +12,7 @@ pub(crate) struct SampleName {
 }
 
 /// `--replay`, in place of an image.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct ReplayArgs {
     /// Print the path of one sample, vertex by vertex, in place of rendering; other options as for the image it belongs to
     #[arg(long, value_name = "FRAME,X,Y,SAMPLE", value_parser = parse, conflicts_with_all = ["output", "stats", "time", "noise", "vs", "aov"])]
