@@ -7,9 +7,10 @@
 
 use luxel::asset::Loader;
 use luxel::build::{BuildTimes, buffer_bytes};
-use luxel::math::sin_cos_deg;
+use luxel::math::{DVec3, sin_cos_deg};
 use luxel::render::{Renderer, Settings};
-use luxel::{scene, world};
+use luxel::scene::{self, SceneDesc};
+use luxel::world::{self, AuthoringIndex, Shape, Spawned, Spin, Transform};
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -62,33 +63,54 @@ fn main() {
     fs::remove_dir_all(&folder).expect("ours");
 }
 
-/// Instances without number, all turning, and what each costs.
+/// Instances without number, all turning, and what each costs. They are spawned as the world would spawn them, without a
+/// text that the process would have to hold as well.
 fn crowd(folder: &Path) {
     fs::write(folder.join("ball.obj"), ball(MEMBER)).expect("writable");
-    let place = |i: u32| (3 * (i % 100), 3 * (i / 100));
-    let member = |i: u32| {
-        let (x, z) = place(i);
-        format!(
-            "(shape: Mesh(\"ball.obj\"), transform: (translate: ({x}, 0, {z})), spin: (axis: (1, 2, {i}), deg_per_s: 90)),\n"
-        )
-    };
+    let turning = "(shape: Mesh(\"ball.obj\"), spin: (axis: (1, 2, 3), deg_per_s: 90)),";
+    let alone = bytes(&mut renderer(folder, turning));
+    let (desc, mut spawned) = spawn(folder, turning);
+    let mesh = |shape: &Shape| matches!(shape, Shape::Mesh { .. }).then_some(*shape);
+    let shape = spawned
+        .world
+        .query::<&Shape>()
+        .iter()
+        .find_map(mesh)
+        .expect("one");
     let before = memory();
-    let mut one = renderer(folder, &member(0));
-    let (alone, _) = one.build(0);
-    let between = memory();
-    let mut all = renderer(folder, &(0..CROWD).map(member).collect::<String>());
-    row("instances, all turning", triangles(MEMBER), &mut all);
-    let (scene, _) = all.build(1);
-    let bytes = |scene| buffer_bytes(scene).iter().map(|b| b.bytes).sum::<usize>();
-    let each = (bytes(&scene) - bytes(&alone)) / CROWD as usize;
-    println!("\n{CROWD} instances: {each} bytes each in the flat scene");
-    if let (Some(before), Some(between), Some(after)) = (before, between, memory()) {
-        let process = (after - between).saturating_sub(between - before);
-        println!(
-            "and {} bytes each of the process",
-            process / u64::from(CROWD)
-        );
+    for i in 1..CROWD {
+        let (x, z) = (f64::from(3 * (i % 100)), f64::from(3 * (i / 100)));
+        let transform = Transform {
+            translate: DVec3::new(x, 0.0, z),
+            ..Transform::default()
+        };
+        let spin = Spin {
+            axis: DVec3::new(1.0, 2.0, f64::from(i)),
+            deg_per_s: 90.0,
+            pivot: None,
+        };
+        let index = AuthoringIndex {
+            entity: i + 1,
+            node: 0,
+        };
+        spawned.world.spawn((index, shape, transform, spin));
     }
+    let settings = Settings::of_scene(&desc);
+    let all = Renderer::new(&desc, spawned.world, &spawned.assets, settings);
+    let mut all = all.expect("threads");
+    row("instances, all turning", triangles(MEMBER), &mut all);
+    let after = memory();
+    let each = (bytes(&mut all) - alone) / CROWD as usize;
+    println!("\n{CROWD} instances: {each} bytes each in the flat scene");
+    if let (Some(before), Some(after)) = (before, after) {
+        let each = after.saturating_sub(before) / u64::from(CROWD);
+        println!("and {each} bytes each of the process");
+    }
+}
+
+fn bytes(renderer: &mut Renderer) -> usize {
+    let (scene, _) = renderer.build(1);
+    buffer_bytes(&scene).iter().map(|b| b.bytes).sum()
 }
 
 /// Prints what frames cost.
@@ -119,6 +141,12 @@ fn row(name: &str, triangles: u32, renderer: &mut Renderer) {
 }
 
 fn renderer(folder: &Path, entities: &str) -> Renderer {
+    let (desc, spawned) = spawn(folder, entities);
+    let settings = Settings::of_scene(&desc);
+    Renderer::new(&desc, spawned.world, &spawned.assets, settings).expect("threads")
+}
+
+fn spawn(folder: &Path, entities: &str) -> (SceneDesc, Spawned) {
     let text = format!(
         "Scene(version: 1, camera: (at: (0, 0, 9), look_at: (0, 0, 0)), render: (size: (8, 8), spp: 1), entities: [
             (shape: Sphere(radius: 1), transform: (translate: (0, 9, 0)), emissive: (radiance: (9, 9, 9))), {entities}])"
@@ -126,8 +154,7 @@ fn renderer(folder: &Path, entities: &str) -> Renderer {
     let file: PathBuf = folder.join("scene.ron");
     let (desc, _) = scene::parse(&text, &file).expect("a scene");
     let spawned = world::spawn(&desc, Loader::new()).expect("a world");
-    let settings = Settings::of_scene(&desc);
-    Renderer::new(&desc, spawned.world, &spawned.assets, settings).expect("threads")
+    (desc, spawned)
 }
 
 /// Of a ball of so many steps around.

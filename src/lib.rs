@@ -108,8 +108,8 @@
 //!   for all entities; nothing but instances, spheres, lights and the camera is made anew from them.
 //! * What stands keeps its tree from frame to frame, under a small one over what moves. Nothing can deform, so that nothing
 //!   is ever refitted.
-//! * The box of an instance is that of its vertices, found by walking its mesh's tree: to the bit the same as from all of
-//!   them, in microseconds.
+//! * The box of an instance comes from a table of how far its mesh reaches in 486 directions, and is a little larger than
+//!   that of its vertices, which nobody could look at in every frame.
 //! * `world::Time` is a frame and a rate, since frame / rate is rounded: a turn of whole frames is one to the bit.
 //! * Frames of an animation are `NAME.partial` until they are finished, whatever the process, so that one that is killed
 //!   leaves nothing that the next does not replace; they are known again by their metadata, entry by entry, so that what

@@ -160,7 +160,7 @@ fn told(name: &str) -> &'static [&'static str] {
         // Its JSON chunk has an odd length.
         () if of("trimesh/cube.glb") => &["W134", "W140"],
         () if of("09_texture_transform") || of("15_transmission") => &["W141", "W140"],
-        () if of("AnimatedCube") => &["W140", "W138"],
+        () if of("AnimatedCube") => &["W140"],
         () if of("RiggedSimple") => &["W138"],
         () if of("Cameras") => &["W139"],
         () if of("01_") && !of("01_single") || of("02_") || of("12_") || of("14_") => &["W140"],

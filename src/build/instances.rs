@@ -4,7 +4,6 @@
 use super::extract::MeshItem;
 use super::meshes::{LocalMesh, mirrors};
 use super::rebase::{local_to_scene, round_down, round_up};
-use super::support::extent;
 use crate::flat::{Instance, Rebase};
 use crate::math::{Aabb, DAffine3, DVec3, Vec3};
 
@@ -50,14 +49,14 @@ pub(crate) fn instance(
     }
 }
 
-/// The box of the transformed vertices, outward by what rounding can move a ray or a hit.
+/// A box of the transformed vertices, outward by what rounding can move a ray or a hit.
 ///
 /// With M, m the map to the scene, A, a the map back, |·| entry by entry, and R = max(`REACH`, box): a ray's origin
 /// and any point along it reach local space with an error of at most γ (|A| R + |a|), which is |M| times that in the
 /// scene; a hit comes back with an error of at most γ (|M||p| + |m|). Each is taken twice for the ray's origin and its
 /// direction.
 fn bounds(local: &LocalMesh, to_world: &DAffine3, to_local: &DAffine3) -> Aabb {
-    let Some(extent) = extent(&local.geometry, to_world) else {
+    let Some(extent) = local.support.extent(to_world) else {
         return Aabb::EMPTY;
     };
     let reach = extent

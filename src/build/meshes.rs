@@ -2,6 +2,7 @@
 
 use super::flatten::Context;
 use super::rebase::{self, to_local};
+use super::support::Support;
 use crate::asset::normals::smooth;
 use crate::asset::{Mesh, MeshId, PerCorner};
 use crate::flat::{self, ObjectId, Rebase, Shading};
@@ -151,6 +152,8 @@ pub(crate) struct LocalMesh {
     pub(crate) geometry: std::sync::Arc<flat::Geometry>,
     /// From the mesh's own space to local units.
     pub(crate) rebase: Rebase,
+    /// How far its vertices reach.
+    pub(crate) support: Support,
     /// The largest absolute coordinates of its vertices.
     pub(crate) farthest: DVec3,
 }
@@ -181,12 +184,14 @@ impl LocalMesh {
             ..Default::default()
         };
         let built = super::bvh::build_with(&primitives, context.accel, context.quality);
+        let geometry = flat::Geometry {
+            triangles: built.triangles,
+            bvh: built.bvh,
+            shading: soup.shading,
+        };
         LocalMesh {
-            geometry: std::sync::Arc::new(flat::Geometry {
-                triangles: built.triangles,
-                bvh: built.bvh,
-                shading: soup.shading,
-            }),
+            support: Support::of(&geometry),
+            geometry: std::sync::Arc::new(geometry),
             rebase,
             farthest,
         }

@@ -119,7 +119,7 @@ struct Placed {
 
 impl Placed {
     fn at(transform: &Transform, keys: Option<&Keys>, t: f64) -> Placed {
-        let translate = keys.and_then(|keys| keys.translate.from_first(t));
+        let translate = keys.and_then(|keys| keys.translate.since_first(t));
         let (moved, translate) = translate.unwrap_or((DVec3::ZERO, transform.translate));
         let rotate = keys.and_then(|keys| keys.rotate.at(t));
         let scale = keys.and_then(|keys| keys.scale.at(t));

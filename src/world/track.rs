@@ -57,7 +57,7 @@ impl<T> Track<T> {
 impl Track<DVec3> {
     /// The value at `t` less the first, and the first; `None` without keys. Apart, so that a scene far from zero gives the
     /// same bits as one near it.
-    pub(super) fn from_first(&self, t: f64) -> Option<(DVec3, DVec3)> {
+    pub(super) fn since_first(&self, t: f64) -> Option<(DVec3, DVec3)> {
         let first = *self.values.first()?;
         let moved = match self.place(t)? {
             Place::At(at) => self.values[at] - first,
@@ -258,7 +258,7 @@ mod tests {
         for t in [1.0, 1.25, 2.0, 2.7, 3.0] {
             let found = spline.at(t).expect("keys").y;
             assert!((found - x(t)).abs() < 1e-14, "{t}: {found}");
-            let (moved, first) = spline.from_first(t).expect("keys");
+            let (moved, first) = spline.since_first(t).expect("keys");
             assert!(((first + moved).z - x(t)).abs() < 1e-14);
         }
     }

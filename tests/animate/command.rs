@@ -225,7 +225,7 @@ fn wrong_lines_are_explained_and_cost_nothing() {
     );
     let keys = "keys: [(t: 1), (t: 0.5)]";
     let at = scene.find("spin:").expect("a spin");
-    let end = scene[at..].find("),").expect("its end") + at;
+    let end = scene[at..].find(")),").expect("its end") + at + 1;
     fs::write(
         folder.0.join("bad.ron"),
         format!("{}{keys}{}", &scene[..at], &scene[end..]),

@@ -116,7 +116,7 @@ fn a_full_turn_in_whole_frames_is_frame_0_to_the_bit() {
                 .collect::<Vec<_>>()
         };
         for fps in [1, 12, 23, 24, 25, 29, 30, 48, 50, 59, 60, 90, 120, 144] {
-            let whole = |frame: &u32| (rate * frame) % (360 * fps) == 0;
+            let whole = |frame: &u32| (rate * frame).is_multiple_of(360 * fps);
             if let Some(frame) = (1..5000).find(whole) {
                 assert_eq!(
                     at(frame, fps),

@@ -9,7 +9,7 @@ use luxel::render::{Control, Renderer, Settings};
 fn crowd() -> String {
     let ball = |i: u32| {
         let (x, z) = (i % 6, i / 6);
-        let spin = if i % 3 == 0 {
+        let spin = if i.is_multiple_of(3) {
             ", spin: (axis: (0, 1, 0), deg_per_s: 90, pivot: (2, 0, 2))"
         } else {
             ""
