@@ -139,11 +139,11 @@ fn light_that_is_found_by_accident_is_not_trusted() {
             entities: [
                 (name: \"floor\", shape: Sphere(radius: 500), transform: (translate: (0, -501, 0)), material: \"white\"),
                 (name: \"ball\", shape: Sphere(radius: 1), material: \"ball\"),
-                (name: \"lamp\", shape: Sphere(radius: 0.02), transform: (translate: (1, 6, 2)), emissive: (radiance: (90000, 90000, 90000))),
+                (name: \"lamp\", shape: Sphere(radius: 0.4), transform: (translate: (1, 6, 2)), emissive: (radiance: (225, 225, 225))),
             ]"
         );
         let stage = Stage::of("lamp", &body, (32, 32));
-        stage.film(Ask::new(32, 0)).error().expect("samples")
+        stage.film(Ask::new(64, 0)).error().expect("samples")
     };
     assert!(!bar("Diffuse(color: Linear(0.7, 0.7, 0.7))").is_fragile());
     let caustic = bar("Mirror");

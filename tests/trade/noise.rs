@@ -32,7 +32,7 @@ fn within(stage: &Stage, wanted: f64, seeds: u64) -> u64 {
 
 #[test]
 fn the_error_is_the_one_asked_for() {
-    for (name, wanted) in [("lens", 0.12), ("cat_textured", 0.04)] {
+    for (name, wanted) in [("lens", 0.12), ("lens", 0.09)] {
         let stage = Stage::shipped(name, 48);
         assert!(within(&stage, wanted, 6) >= 5, "{name}");
     }
@@ -92,7 +92,7 @@ fn neither_threads_nor_tiles_choose_the_number_of_samples() {
     assert_eq!(plain.metadata, one.metadata);
 }
 
-/// A pixel that is bright by accident: one bounce, and a lamp that one path of eight or so finds. Its light is the mean over
+/// A pixel that is bright by accident: one bounce, and a lamp that one path of fourteen or so finds. Its light is the mean over
 /// many seeds, whatever number of samples each takes; a render that looks at its own samples stops while it is dark.
 #[test]
 fn asking_does_not_change_the_light() {
@@ -102,7 +102,7 @@ fn asking_does_not_change_the_light() {
         materials: {\"white\": Diffuse(color: Linear(1, 1, 1))},
         entities: [
             (name: \"wall\", shape: Sphere(radius: 300), transform: (translate: (0, 0, -300)), material: \"white\"),
-            (name: \"lamp\", shape: Sphere(radius: 2), transform: (translate: (0, 0, 6)), emissive: (radiance: (9, 9, 9))),
+            (name: \"lamp\", shape: Sphere(radius: 1.5), transform: (translate: (3, 0, 4)), emissive: (radiance: (9, 9, 9))),
         ]";
     let stage = Stage::of("accident", body, (1, 1)).without_light_samples();
     let light = |ask: Ask| f64::from(stage.film(ask).radiance()[0][0]);

@@ -22,10 +22,11 @@ fn slope(stage: &Stage, spps: &[u32], seeds: u64) -> f64 {
     xy / xx
 }
 
-/// A floor seen from above, a lamp out of sight, and what stands between them.
+/// A floor seen from above, a lamp out of sight, and what stands between them; pixels are as small as those of a picture of 512
+/// rows.
 fn floor(name: &str, between: &str) -> Stage {
     let body = format!(
-        "camera: (at: (0, 4, 0.01), look_at: (0, 0, 0), vfov_deg: 20), render: (size: (16, 16), spp: 4, max_bounces: 1),
+        "camera: (at: (0, 4, 0.01), look_at: (0, 0, 0), vfov_deg: 2), render: (size: (16, 16), spp: 4, max_bounces: 1),
         materials: {{\"white\": Diffuse(color: Linear(0.5, 0.5, 0.5))}},
         entities: [
             (name: \"floor\", shape: Sphere(radius: 1000), transform: (translate: (0, -1000, 0)), material: \"white\"),
@@ -36,16 +37,18 @@ fn floor(name: &str, between: &str) -> Stage {
     Stage::of(name, &body, (16, 16))
 }
 
+/// Faster than independent samples by far, but not as fast as the samples grow: place in the pixel and place on the lamp are two
+/// pairs of dimensions, spread evenly each by itself.
 #[test]
-fn on_a_lit_plane_the_error_falls_faster_than_the_samples_grow() {
+fn on_a_lit_plane_the_error_falls_as_the_power_of_four_fifths() {
     let slope = slope(&floor("lit plane", ""), &[4, 16, 64, 256], 8);
-    assert!(slope <= -1.0, "{slope}");
+    assert!(slope <= -0.80, "{slope}");
 }
 
 /// The ball is out of sight, its penumbra fills the frame.
 #[test]
 fn in_a_soft_shadow_it_falls_as_the_power_of_three_quarters() {
-    let ball = "(name: \"ball\", shape: Sphere(radius: 1.5), transform: (translate: (3.0, 4.0, 0)), material: \"white\"),";
+    let ball = "(name: \"ball\", shape: Sphere(radius: 1), transform: (translate: (3.74, 3.32, 0)), material: \"white\"),";
     let slope = slope(&floor("soft shadow", ball), &[4, 16, 64, 256], 8);
     assert!(slope <= -0.70, "{slope}");
 }
