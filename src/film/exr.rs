@@ -103,6 +103,7 @@ mod tests {
         let planes = Planes {
             rgb: vec![[0.25, 0.5, 1e6], [1.0, 3.0, 5.0]],
             rgb_squared: vec![[1.0; 3]; 2],
+            gains: Vec::new(),
             count: vec![1, 2],
             non_finite: vec![0; 2],
             hit_count: vec![0, 2],
