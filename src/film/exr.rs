@@ -114,7 +114,6 @@ mod tests {
             uv: vec![[0.0; 2], [0.5, 1.5]],
             prim: vec![u32::MAX, 3],
             entity: vec![u32::MAX, 1],
-            ..Planes::default()
         };
         film.put(window, &planes);
         film

@@ -1,4 +1,8 @@
 //! Some paths that a stage works on together, and their elements of SoA arrays.
+#![allow(
+    clippy::needless_range_loop,
+    reason = "lanes are numbers here: several arrays are indexed by one"
+)]
 
 use super::vector::V3;
 use crate::math::lanes::{BitLanes, Words};
@@ -89,8 +93,11 @@ impl Chunk {
 
     #[inline(always)]
     pub(super) fn vector<L: BitLanes>(&self, [x, y, z]: &[impl AsRef<[f32]>; 3]) -> V3<L> {
-        let lanes = |array: &[f32]| self.lanes(array);
-        V3([lanes(x.as_ref()), lanes(y.as_ref()), lanes(z.as_ref())])
+        V3([
+            self.lanes(x.as_ref()),
+            self.lanes(y.as_ref()),
+            self.lanes(z.as_ref()),
+        ])
     }
 
     /// Overwrites the paths' elements.

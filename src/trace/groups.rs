@@ -1,5 +1,9 @@
 //! Grouping: which paths missed, what the others hit, how that scatters, and whether it shines. One pass over the hits,
 //! which also looks up materials and their constant colours.
+#![allow(
+    clippy::needless_range_loop,
+    reason = "paths are numbers here: several arrays are indexed by one"
+)]
 
 use super::Hits;
 use super::wave::Wave;

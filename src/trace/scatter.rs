@@ -2,6 +2,10 @@
 //!
 //! Weights are f cos θ / pdf in closed form: a Lambert sample multiplies the throughput by the albedo and nothing
 //! else, so that a furnace is exact in every sample.
+#![allow(
+    clippy::needless_range_loop,
+    reason = "lanes are numbers here: several arrays are indexed by one"
+)]
 
 use super::chunk::{Chunk, WIDEST};
 use super::fresnel::{dielectrics, metal};

@@ -1,4 +1,8 @@
 //! Surface: where a path is, from its hit and the cold arrays. Attributes are read once, for the closest hit only.
+#![allow(
+    clippy::needless_range_loop,
+    reason = "lanes are numbers here: several arrays are indexed by one"
+)]
 
 use super::attributes::{Place, texture_color, vertex_color};
 use super::chunk::{Chunk, WIDEST};

@@ -10,7 +10,8 @@ use std::f64::consts::PI;
 /// Roundings of f32 between a light and a pixel.
 const ROUNDING: f64 = 1e-5;
 
-/// What a spot of albedo 1/2 in the plane y = 0 around the origin shows of a light.
+/// What a spot of albedo 1/2 in the plane y = 0 around the origin shows of a light. It is off the square's diagonal, beside
+/// which hits step aside.
 fn receiver(name: &str, light: &str, more: &str) -> Stage {
     Stage::new(name)
         .file("square.obj", &objs::square(0.0, 1.0))
@@ -18,7 +19,7 @@ fn receiver(name: &str, light: &str, more: &str) -> Stage {
             r#"camera: (at: (-0.4, 0.3, 0.1), look_at: (0, 0, 0), vfov_deg: 1e-7), render: (size: (2, 2), filter: Box),
             materials: {{"half": Diffuse(color: Linear(0.5, 0.5, 0.5))}},
             entities: [(shape: Mesh("square.obj"), normals: Flat, material: "half",
-                transform: (rotate: Euler(-90, 0, 0), scale: 0.01)), {light}, {more}]"#
+                transform: (translate: (0.003, 0, 0), rotate: Euler(-90, 0, 0), scale: 0.01)), {light}, {more}]"#
         ))
 }
 

@@ -112,7 +112,10 @@ pub(crate) fn world_errors<L: Lanes>(triangles: &Triangles, hits: &mut Hits) {
                 bounds.margin.store(&mut margin);
                 for lane in 0..lanes {
                     if beside >> lane & 1 == 1 {
-                        let corners = v.map(|v| v.map(|axis| axis[lane]));
+                        let mut corners = [[0.0; 3]; 3];
+                        for (corner, from) in corners.iter_mut().zip(&v) {
+                            *corner = [from[0][lane], from[1][lane], from[2][lane]];
+                        }
                         let weights = [hits.u[at + lane], hits.v[at + lane]];
                         [hits.u[at + lane], hits.v[at + lane]] =
                             inward::step(corners, weights, margin[lane]);
@@ -240,9 +243,11 @@ fn local_error(instance: &Instance, v: [[f32; 3]; 3], [b1, b2]: [f32; 2]) -> [f3
 fn local_blur(instance: &Instance, v: [[f32; 3]; 3], weights: [f32; 2]) -> f32 {
     let local = triangle_point(v, weights[0], weights[1]);
     let inside = local_error(instance, v, weights);
-    let world = instance
-        .to_world
-        .map(|row| gamma(7) * magnitude(row, local));
+    // Not by `array::map`, which is not inlined.
+    let mut world = [0.0; 3];
+    for axis in 0..3 {
+        world[axis] = gamma(7) * magnitude(instance.to_world[axis], local);
+    }
     let mut blur = 0.0;
     for axis in 0..3 {
         let w = &instance.to_local[axis];

@@ -1,4 +1,8 @@
 //! Sphere lights: a direction in the cone that a sphere fills, and its density.
+#![allow(
+    clippy::needless_range_loop,
+    reason = "lanes are numbers here: several arrays are indexed by one"
+)]
 
 use super::{LightSample, SHORT, mean};
 use crate::flat::FlatScene;
