@@ -53,9 +53,16 @@ pub fn check_folder(path: &Path) -> io::Result<()> {
             "it is a folder",
         ));
     }
-    let probe = temporary_name(path)?;
-    File::create_new(&probe)?;
-    fs::remove_file(&probe)
+    // One name for every process: what one leaves that is killed here, the next removes.
+    let mut name = OsString::from(".");
+    name.push(path.file_name().unwrap_or_default());
+    name.push(".probe");
+    let probe = path.with_file_name(name);
+    File::create(&probe)?;
+    match fs::remove_file(&probe) {
+        Err(e) if e.kind() != io::ErrorKind::NotFound => Err(e),
+        _ => Ok(()),
+    }
 }
 
 fn write_all(path: &Path, bytes: &[u8]) -> io::Result<()> {
