@@ -207,7 +207,10 @@ fn ratio(part: f64, whole: f64) -> f64 {
 /// A share in percent, with the decimals that make two digits of `unit`.
 fn percent(share: f64, unit: f64) -> String {
     let steps = std::iter::successors(Some(100.0 * unit), |step| Some(10.0 * step));
-    let decimals = steps.take(6).take_while(|step| *step < 9.5).count();
+    let decimals = match unit > 0.0 {
+        true => steps.take(6).take_while(|step| *step < 9.5).count(),
+        false => 0,
+    };
     format!("{:.decimals$}", 100.0 * share)
 }
 
@@ -221,6 +224,6 @@ mod tests {
         assert_eq!(percent(0.002_1, 0.002_1), "0.21");
         assert_eq!(percent(0.4, 0.2), "40");
         assert_eq!(percent(0.000_183, 0.000_02), "0.0183");
-        assert_eq!(percent(0.0, 0.0), "0.000000");
+        assert_eq!(percent(0.0, 0.0), "0");
     }
 }
