@@ -50,7 +50,11 @@ const RULES: &[Rule] = &[
         &["glam", "hecs", "rayon"],
     ),
     ("trace", &["flat", "math"], &["glam"]),
-    ("film", &["math"], &["exr", "gif", "png", "thiserror"]),
+    (
+        "film",
+        &["math"],
+        &["crc32fast", "exr", "gif", "png", "thiserror"],
+    ),
     (
         "render",
         &[
@@ -91,6 +95,7 @@ const RULES: &[Rule] = &[
 const CRATES: &[&str] = &[
     "annotate_snippets",
     "clap",
+    "crc32fast",
     "ctrlc",
     "exr",
     "gif",

@@ -5,6 +5,8 @@ use super::author_args::{ConvertArgs, TurntableArgs};
 use super::bench_args::BenchArgs;
 use super::dial_args::DialArgs;
 use super::goal_args::GoalArgs;
+use super::merge_args::{InfoArgs, MergeArgs};
+use super::part_args::PartArgs;
 use super::replay_args::ReplayArgs;
 use super::stability_args::StabilityArgs;
 use super::tune_args::TuneArgs;
@@ -33,8 +35,10 @@ Examples:
   luxel bench                                      how fast rays are traced, and why
   luxel stability room.ron                         what goes wrong with the scene at other sizes and places
   luxel tune room.ron                              which settings are worth their time: draft, preview, final
+  luxel merge a.exr.*.part -o a.exr                one image of what many machines rendered
+  luxel info a.exr                                 what an image is, and the line that makes it again
 
-Exit codes: 0 done, 1 images differ by more than --max (bench: the arms' hits do; stability: the scene goes wrong), 2 usage, 65 bad scene or image, 66 missing file, 70 bug, 74 i/o, 75 stopped, and the same line goes on, 130 stopped"
+Exit codes: 0 done, 1 images differ by more than --max (bench: the arms' hits do; stability: the scene goes wrong), 2 usage, 65 bad scene, image or part, 66 missing file, 70 bug, 74 i/o, 75 stopped, and the same line goes on, 130 stopped"
 )]
 pub(crate) struct Cli {
     /// What to do.
@@ -65,6 +69,10 @@ pub(crate) enum Command {
     Stability(StabilityArgs),
     /// Measure what every dial costs and errs in a scene, and find settings for draft, preview and final
     Tune(TuneArgs),
+    /// Put the shares of a render together: the bits of a single run
+    Merge(MergeArgs),
+    /// Show what an image or a part film is, and the line that makes it again
+    Info(InfoArgs),
 }
 
 /// `luxel render`.
@@ -78,10 +86,17 @@ Examples:
   luxel render room.ron -q preview                 as `luxel tune room.ron` found best
   luxel render room.ron -o - | viewer              PNG on stdout
   luxel render room.ron --replay 0,12,7,3          what sample 3 of pixel (12, 7) of frame 0 met
+  luxel render room.ron --checkpoint 60s           killed or stopped, the same line goes on
+  luxel render room.ron -o a.exr --shard 2/4       a quarter of the samples: a.exr.2-of-4.part
+  luxel merge a.exr.*-of-4.part -o a.exr           all four: to the bit what one machine renders
 
 --spp, --noise and --time: the first that is reached ends the render.
-Ctrl-C writes what there is to NAME.partial.png (or .exr) and exits with 130.
-With equal samples the picture is the same to the bit for any --threads, --tile, --isa, --accel and --tree.")]
+Ctrl-C writes what there is to NAME.partial.png (or .exr) and exits with 130. With --checkpoint, or of a share, it and
+SIGTERM save the part film instead and exit with 75; a second one stops at once. A part that is there is gone on from
+if it was made of the same scene, files and settings; another is an error, unless --overwrite. It stays beside the
+finished image, so that --spp 128 adds the missing samples to those of --spp 64, and --time more with each run.
+With equal samples the picture is the same to the bit for any --threads, --tile, --isa, --accel and --tree, however
+often it was stopped, and however it was shared.")]
 pub(crate) struct RenderArgs {
     /// The scene file (RON)
     pub(crate) scene: PathBuf,
@@ -107,6 +122,8 @@ pub(crate) struct RenderArgs {
     pub(crate) stats: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) goal: GoalArgs,
+    #[command(flatten)]
+    pub(crate) parts: PartArgs,
     #[command(flatten)]
     pub(crate) replay: ReplayArgs,
 }

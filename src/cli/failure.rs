@@ -121,6 +121,17 @@ impl Failure {
         }
     }
 
+    /// A part film cannot be used.
+    pub(crate) fn bad_part(path: &Path, cause: &dyn fmt::Display, hint: &str) -> Failure {
+        Failure {
+            code: code::DATA,
+            what: What::Message(
+                format!("\"{}\" cannot be used: {cause}", path.display()),
+                Some(hint.to_owned()),
+            ),
+        }
+    }
+
     /// Images are not as equal as was asked.
     pub(crate) fn different(message: impl fmt::Display) -> Failure {
         Failure {

@@ -21,10 +21,15 @@ mod failure;
 mod frame_list;
 mod frames;
 mod goal_args;
+mod info;
 mod interrupt;
 mod load;
+mod merge;
+mod merge_args;
 mod names;
 mod output;
+mod part;
+mod part_args;
 mod patience;
 mod progress;
 mod render;
@@ -66,6 +71,8 @@ pub fn run() -> ExitCode {
         Command::Bench(args) => bench::run(args),
         Command::Stability(args) => stability::run(args),
         Command::Tune(args) => tune::run(args),
+        Command::Merge(args) => merge::run(args),
+        Command::Info(args) => info::run(args),
     };
     match done {
         Ok(()) => ExitCode::from(code::DONE),

@@ -90,10 +90,24 @@ impl Output {
 
     /// Encodes and writes.
     pub(crate) fn write(&self, film: &Film, encoding: &Encoding<'_>) -> Result<(), Failure> {
+        self.write_by(film::write_file, film, encoding)
+    }
+
+    /// The same for what the same line writes again if it is killed.
+    pub(crate) fn write_again(&self, film: &Film, encoding: &Encoding<'_>) -> Result<(), Failure> {
+        self.write_by(film::write_frame, film, encoding)
+    }
+
+    fn write_by(
+        &self,
+        write: fn(&Path, &[u8]) -> std::io::Result<()>,
+        film: &Film,
+        encoding: &Encoding<'_>,
+    ) -> Result<(), Failure> {
         let name = self.to_string();
         let bytes = encode(self.format, film, encoding).map_err(|e| Failure::io(&name, &e))?;
         match &self.path {
-            Some(path) => film::write_file(path, &bytes).map_err(|e| Failure::io(&name, &e)),
+            Some(path) => write(path, &bytes).map_err(|e| Failure::io(&name, &e)),
             None => print_result(&bytes),
         }
     }

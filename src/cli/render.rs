@@ -3,13 +3,14 @@
 use super::args::RenderArgs;
 use super::failure::Failure;
 use super::output::{Encoding, Output, check_writable};
-use super::progress::Progress;
-use super::stats::Account;
+use super::part::Part;
+use super::progress::{Progress, words};
+use super::stats::{Account, lost};
 use super::tuned::Tuned;
 use super::versus::Versus;
 use super::{advice, diagnostics, interrupt, load, print_result, replay, say};
 use crate::film;
-use crate::render::{Control, Rendering, Settings};
+use crate::render::{Canvas, Control, Rendering, Settings, Traced};
 use crate::scene::{RenderDesc, SceneDesc};
 use std::ffi::OsStr;
 use std::path::Path;
@@ -50,6 +51,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
         Some(reference) => Some(Versus::start(reference, &output, settings.size)?),
         None => None,
     };
+    let part = Part::plan(args, &output, &settings)?;
     let files = loaded.memory();
     let mut renderer = loaded.renderer(settings)?;
     if let Some(tuned) = &tuned {
@@ -57,12 +59,26 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
     }
     let load = start.elapsed();
     let rendering = {
-        let _bar = Progress::start(&control, time);
-        match &mut versus {
-            None => renderer.render(args.frame, &control),
-            Some(versus) => renderer.render_watched(args.frame, &control, |film, spp, time| {
-                versus.look(film, spp, time);
-            }),
+        match (&part, &mut versus) {
+            (Some(part), _) => {
+                let canvas = part.canvas(&renderer, args.frame)?;
+                let _bar = Progress::start(&control, time);
+                let traced = part.render(&mut renderer, args.frame, &control, &canvas)?;
+                if !part.is_whole() {
+                    return tell_share(args, part, &canvas, &traced);
+                }
+                traced.finish(canvas)
+            }
+            (None, Some(versus)) => {
+                let _bar = Progress::start(&control, time);
+                renderer.render_watched(args.frame, &control, |film, spp, time| {
+                    versus.look(film, spp, time);
+                })
+            }
+            (None, None) => {
+                let _bar = Progress::start(&control, time);
+                renderer.render(args.frame, &control)
+            }
         }
     };
     let encoding = Encoding::new(
@@ -75,7 +91,10 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
         return Err(write_partial(&output, &rendering, &encoding));
     }
     let writing = Instant::now();
-    output.write(&rendering.film, &encoding)?;
+    match part {
+        None => output.write(&rendering.film, &encoding)?,
+        Some(_) => output.write_again(&rendering.film, &encoding)?,
+    }
     let mut account = Account {
         output: output.to_string(),
         film: &rendering.film,
@@ -113,6 +132,31 @@ fn tell(args: &RenderArgs, output: &Output, account: &Account<'_>) -> Result<(),
         say(&format!("warning: {doubt}"));
     }
     match account.lost() {
+        None => Ok(()),
+        Some(lost) if args.dials.strict => Err(Failure::lost_samples(lost, LOST_HINT)),
+        Some(lost) => {
+            say(&format!("warning: {lost}\n  = help: {LOST_HINT}"));
+            Ok(())
+        }
+    }
+}
+
+/// The path on stdout, and on stderr what to do with a share.
+fn tell_share(
+    args: &RenderArgs,
+    part: &Part,
+    canvas: &Canvas,
+    traced: &Traced,
+) -> Result<(), Failure> {
+    print_result(format!("{}\n", part.path.display()).as_bytes())?;
+    say(&format!(
+        "{} · trace {} · {:.1} Mrays/s · `luxel merge` makes an image of all shares",
+        part.path.display(),
+        words(traced.stats.stages.trace),
+        traced.stats.mrays_per_second(),
+    ));
+    let count = canvas.patches().map(|patch| patch.non_finite_samples());
+    match lost(count.sum(), &traced.non_finite) {
         None => Ok(()),
         Some(lost) if args.dials.strict => Err(Failure::lost_samples(lost, LOST_HINT)),
         Some(lost) => {

@@ -2,6 +2,7 @@
 
 use super::failure::Failure;
 use super::output::{Encoding, Format, check_writable, encode, format_of};
+use super::part::OWN;
 use crate::film::{self, Aov, Film, Metadata, Stored};
 use std::ffi::OsStr;
 use std::fs;
@@ -112,27 +113,9 @@ impl Sequence {
 
 /// What a file was made of that is not what is asked for now; `None` if all of it is.
 fn difference(stored: &Stored, format: Format, encoding: &Encoding<'_>) -> Option<String> {
-    let has = |key: &str| {
-        let entry = stored.metadata.iter().find(|(k, _)| k == key);
-        entry.map(|(_, value)| value.as_str())
-    };
-    let wanted: Vec<(&str, &str)> = encoding.metadata.entries().collect();
-    for (key, value) in &wanted {
-        match (*key, has(key)) {
-            (_, Some(there)) if there == *value => {}
-            ("scene", Some(_)) => {
-                return Some("was made of another scene, or of other files".to_owned());
-            }
-            (key, Some(there)) => return Some(format!("was made with {key} {there}, not {value}")),
-            (key, None) => return Some(format!("does not say its {key}")),
-        }
-    }
-    let surplus = stored
-        .metadata
-        .iter()
-        .find(|(k, _)| wanted.iter().all(|(w, _)| w != k));
-    if let Some((key, value)) = surplus {
-        return Some(format!("was made with {key} {value}"));
+    let made = difference_of(&stored.metadata, &encoding.metadata, &[]);
+    if made.is_some() {
+        return made;
     }
     let mut channels = match format {
         Format::Png => Vec::new(),
@@ -146,6 +129,34 @@ fn difference(stored: &Stored, format: Format, encoding: &Encoding<'_>) -> Optio
     let mut there = stored.channels.clone();
     there.sort_unstable();
     (there != channels).then(|| "holds other images (--aov)".to_owned())
+}
+
+/// What `there` says that `wanted` does not, or otherwise, but for `free` keys; `None` if it is the same.
+pub(super) fn difference_of(there: &Metadata, wanted: &Metadata, free: &[&str]) -> Option<String> {
+    let counts = |key: &str| !free.contains(&key);
+    for (key, value) in wanted.entries().filter(|(key, _)| counts(key)) {
+        match (key, there.value(key)) {
+            (_, Some(has)) if has == value => {}
+            ("scene", Some(_)) => {
+                return Some("was made of another scene, or of other files".to_owned());
+            }
+            ("version", Some(has)) => {
+                return Some(format!("was made by luxel {has}, and this is {value}"));
+            }
+            (key, Some(has)) => {
+                return Some(format!("was made with {} {has}, not {value}", name_of(key)));
+            }
+            (key, None) => return Some(format!("does not say its {}", name_of(key))),
+        }
+    }
+    let mut surplus = there.entries().filter(|(key, _)| counts(key));
+    let (key, value) = surplus.find(|(key, _)| wanted.value(key).is_none())?;
+    Some(format!("was made with {} {value}", name_of(key)))
+}
+
+/// What a person calls a key: `part.samples` are samples.
+fn name_of(key: &str) -> &str {
+    key.strip_prefix(OWN).unwrap_or(key)
 }
 
 /// The path of a frame: the last run of # in the name becomes its number, with as many digits or more.

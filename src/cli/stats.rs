@@ -59,6 +59,18 @@ pub(crate) fn lost(count: u64, some: &[NonFinite]) -> Option<String> {
     })
 }
 
+/// `relative RMSE 1.8 % ± 0.2`.
+pub(crate) fn error_words(bar: Option<&ErrorBar>) -> String {
+    match bar {
+        None => "error unknown".to_owned(),
+        Some(bar) => format!(
+            "relative RMSE {} % ± {}",
+            percent(bar.relative, bar.half_width),
+            percent(bar.half_width, bar.half_width)
+        ),
+    }
+}
+
 impl Account<'_> {
     /// One line: `room.png · 512×512 · 64 spp · 3.1 s · relative RMSE 1.8 % ± 0.2 · 12.3 Mrays/s · extract 100 µs, flatten
     /// 2 ms, tree 8 ms · 12 MB`, the last being what the files and the buffers take.
@@ -71,7 +83,7 @@ impl Account<'_> {
             self.film.height(),
             self.samples(),
             words(stages.pilot + stages.trace),
-            self.error_bar(),
+            error_words(self.error.as_ref()),
             self.stats.mrays_per_second(),
             words(stages.pose + stages.extract),
             words(stages.flatten),
@@ -92,18 +104,6 @@ impl Account<'_> {
             ),
             (_, Some(_)) => format!("{spp} spp, ended by --spp"),
             _ => format!("{spp} spp"),
-        }
-    }
-
-    /// `relative RMSE 1.8 % ± 0.2`.
-    fn error_bar(&self) -> String {
-        match &self.error {
-            None => "error unknown".to_owned(),
-            Some(bar) => format!(
-                "relative RMSE {} % ± {}",
-                percent(bar.relative, bar.half_width),
-                percent(bar.half_width, bar.half_width)
-            ),
         }
     }
 

@@ -8,8 +8,8 @@ pub struct Planes {
     pub rgb: Vec<[f64; 3]>,
     /// Sum of squared radiance, for the standard error.
     pub rgb_squared: Vec<[f64; 3]>,
-    /// For each level k, how much neighbouring blocks of 2ᵏ samples differ, as [`super::Blocks::means`] gives it; no level
-    /// where samples are independent.
+    /// For each level k, the mean over pairs of neighbouring runs of 2ᵏ samples ([`super::Blocks`]) of the squared
+    /// half-difference of their means; no level where samples are independent.
     pub gains: Vec<Vec<[f32; 3]>>,
     /// Samples in those sums.
     pub count: Vec<u32>,
@@ -34,7 +34,7 @@ pub struct Planes {
 }
 
 /// Pixels `x..x + width` of rows `y..y + height`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Window {
     /// First column.
     pub x: u32,
@@ -104,8 +104,8 @@ impl Film {
         self.planes.non_finite.iter().map(|&n| u64::from(n)).sum()
     }
 
-    /// Puts a tile in its place. Sums are replaced, not added: a tile carries its own through all of its samples, so
-    /// that the order of summation depends on sample indices alone. Tiles that overlap are a mistake of the caller.
+    /// Puts a tile in its place. Sums are replaced, not added: a tile carries its own through all of its samples, in the
+    /// order of [`super::Blocks`]. Tiles that overlap are a mistake of the caller.
     ///
     /// # Panics
     /// If the window leaves the film or an array of the tile has another length than the window.

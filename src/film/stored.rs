@@ -1,5 +1,6 @@
 //! Pictures of luxel's own, read back: what they say about themselves, and what they show.
 
+use super::Metadata;
 use super::srgb::Encoder;
 use ::exr::prelude::{
     AttributeValue, FlatSamples, ReadChannels, ReadLayers, Text, read as read_exr,
@@ -19,8 +20,10 @@ pub struct DecodeError {
 /// A PNG or an EXR that [`super::encode_png`] or [`super::encode_exr`] wrote.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stored {
-    /// Of the [`super::Metadata`] it was written with, in order.
-    pub metadata: Vec<(String, String)>,
+    /// What it was written with.
+    pub metadata: Metadata,
+    /// Columns and rows.
+    pub size: (u32, u32),
     /// Names of an EXR's channels, sorted; none of a PNG's.
     pub channels: Vec<String>,
     /// Three sRGB bytes per pixel, row by row from the top.
@@ -46,13 +49,15 @@ pub fn decode_png(bytes: &[u8]) -> Result<Stored, DecodeError> {
     let mut rgb = vec![0; size.ok_or_else(|| refuse(&"it is too large"))?];
     reader.next_frame(&mut rgb).map_err(|e| refuse(&e))?;
     reader.finish().map_err(|e| refuse(&e))?;
-    let texts = reader.info().uncompressed_latin1_text.iter();
-    let own = texts.filter_map(|text| {
-        let key = text.keyword.strip_prefix("luxel:")?;
-        Some((key.to_owned(), text.text.clone()))
-    });
+    let mut metadata = Metadata::default();
+    for text in &reader.info().uncompressed_latin1_text {
+        if let Some(key) = text.keyword.strip_prefix("luxel:") {
+            metadata.push(key, &text.text);
+        }
+    }
     Ok(Stored {
-        metadata: own.collect(),
+        metadata,
+        size: reader.info().size(),
         channels: Vec::new(),
         rgb,
     })
@@ -82,7 +87,6 @@ pub fn decode_exr(bytes: &[u8], gain: f64) -> Result<Stored, DecodeError> {
         Some(AttributeValue::Text(text)) => text.to_string(),
         _ => return Err(refuse("it is not of luxel".to_owned())),
     };
-    let metadata = lines.lines().filter_map(|line| line.split_once(": "));
     let list = &layer.channel_data.list;
     let plane = |name: &str| match list.iter().find(|c| c.name.eq(name)) {
         Some(channel) => match &channel.sample_data {
@@ -97,9 +101,8 @@ pub fn decode_exr(bytes: &[u8], gain: f64) -> Result<Stored, DecodeError> {
     let curve = Encoder::new();
     let pixels = r.iter().zip(g).zip(b);
     Ok(Stored {
-        metadata: metadata
-            .map(|(k, v)| (k.to_owned(), v.to_owned()))
-            .collect(),
+        metadata: Metadata::from_lines(&lines),
+        size: (layer.size.width() as u32, layer.size.height() as u32),
         channels: list.iter().map(|c| c.name.to_string()).collect(),
         rgb: pixels
             .flat_map(|((r, g), b)| [*r, *g, *b])

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// Any of the file system.
 pub fn write_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    write_by(&temporary_name(path)?, path, bytes)
+    write_by(&temporary_name(path)?, path, |file| file.write_all(bytes))
 }
 
 /// The same for a file of many that the same command writes again if it is killed: the temporary is `NAME.partial`
@@ -20,7 +20,18 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
 /// # Errors
 /// Any of the file system.
 pub fn write_frame(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    write_by(&partial_name(path), path, bytes)
+    write_streamed(path, |file| file.write_all(bytes))
+}
+
+/// The same for a file that is written bit by bit.
+///
+/// # Errors
+/// Any of the file system, and of `write`.
+pub fn write_streamed(
+    path: &Path,
+    write: impl FnOnce(&mut File) -> io::Result<()>,
+) -> io::Result<()> {
+    write_by(&partial_name(path), path, write)
 }
 
 /// `NAME.partial` beside `path`.
@@ -31,8 +42,12 @@ pub fn partial_name(path: &Path) -> PathBuf {
     PathBuf::from(name)
 }
 
-fn write_by(temporary: &Path, path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let written = write_all(temporary, bytes).and_then(|()| fs::rename(temporary, path));
+fn write_by(
+    temporary: &Path,
+    path: &Path,
+    write: impl FnOnce(&mut File) -> io::Result<()>,
+) -> io::Result<()> {
+    let written = write_all(temporary, write).and_then(|()| fs::rename(temporary, path));
     if written.is_err() {
         // The first error is the one to tell; the temporary may not even exist.
         let _ = fs::remove_file(temporary);
@@ -65,9 +80,9 @@ pub fn check_folder(path: &Path) -> io::Result<()> {
     }
 }
 
-fn write_all(path: &Path, bytes: &[u8]) -> io::Result<()> {
+fn write_all(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<()> {
     let mut file = File::create(path)?;
-    file.write_all(bytes)?;
+    write(&mut file)?;
     file.sync_all()
 }
 

@@ -1,17 +1,17 @@
 //! Frames of one scene.
 
+use super::canvas::lock;
 use super::lost::{self, NonFinite};
 use super::metadata::{self, scene_hash};
 use super::passes::{Deadline, Passes};
 use super::pilot::{self, Verdict};
-use super::tiles::{self, Tile};
-use super::{Control, Ended, Settings, Stages, Stats};
+use super::{Canvas, Control, Ended, Settings, Share, Stages, Stats, tiles};
 use crate::asset::AssetStore;
 use crate::build::{BuildOptions, BuildTimes, SceneBuilder};
-use crate::film::{Blocks, Film, Metadata, Planes, Window};
+use crate::film::{Film, Metadata};
 use crate::flat::{FlatScene, PixelFilter};
 use crate::scene::{BackgroundDesc, FilterDesc, SceneDesc};
-use crate::trace::{Rect, TileSums, TraceOptions, Tracer};
+use crate::trace::{TraceOptions, Tracer};
 use crate::world::{Time, pose};
 use hecs::World;
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
@@ -29,6 +29,30 @@ pub struct Rendering {
     /// Samples that the film left out because they are not finite: of all that [`Film::total_non_finite`] counts, the
     /// first by row, column and index.
     pub non_finite: Vec<NonFinite>,
+}
+
+/// A frame whose samples are on a canvas.
+#[derive(Clone, Debug)]
+pub struct Traced {
+    /// What made it.
+    pub metadata: Metadata,
+    /// What it cost.
+    pub stats: Stats,
+    /// As [`Rendering::non_finite`].
+    pub non_finite: Vec<NonFinite>,
+}
+
+impl Traced {
+    /// Puts the film together.
+    #[must_use]
+    pub fn finish(self, canvas: Canvas) -> Rendering {
+        Rendering {
+            film: canvas.into_film(),
+            metadata: self.metadata,
+            stats: self.stats,
+            non_finite: self.non_finite,
+        }
+    }
 }
 
 /// Renders frames of a scene on threads of its own. Geometry that no frame changes is kept from one to the next.
@@ -134,7 +158,9 @@ impl Renderer {
 
     /// Renders a frame, or as much of it as [`Settings`] and `control` allow.
     pub fn render(&mut self, frame: u32, control: &Control) -> Rendering {
-        self.render_by(frame, control, |_, _, _| ())
+        let canvas = Canvas::new(&self.settings, &Share::default());
+        let traced = self.render_onto(frame, control, &canvas);
+        traced.finish(canvas)
     }
 
     /// The same, while `watch` sees the film after each pass over the whole image, with the samples per pixel and the time
@@ -145,26 +171,33 @@ impl Renderer {
         control: &Control,
         mut watch: impl FnMut(&Film, u32, Duration) + Send,
     ) -> Rendering {
-        let (width, height) = self.settings.size;
+        let canvas = Canvas::new(&self.settings, &Share::default());
         let mut watching = Duration::ZERO;
-        self.render_by(frame, control, |tiles, spp, spent| {
+        let traced = self.render_by(frame, control, &canvas, |spp, spent| {
             let now = Instant::now();
-            let film = assemble(width, height, tiles.iter().cloned());
-            watch(&film, spp, spent - watching);
+            watch(&canvas.film(), spp, spent - watching);
             watching += now.elapsed();
-        })
+        });
+        traced.finish(canvas)
+    }
+
+    /// Adds to a canvas what it has not yet of a frame, or as much of it as [`Settings`] and `control` allow. It may be
+    /// looked at meanwhile.
+    pub fn render_onto(&mut self, frame: u32, control: &Control, canvas: &Canvas) -> Traced {
+        self.render_by(frame, control, canvas, |_, _| ())
     }
 
     fn render_by(
         &mut self,
         frame: u32,
         control: &Control,
-        watch: impl FnMut(&[Tile], u32, Duration) + Send,
-    ) -> Rendering {
+        canvas: &Canvas,
+        watch: impl FnMut(u32, Duration) + Send,
+    ) -> Traced {
         let deadline = self.settings.time.map(Deadline::after);
         let (scene, times) = self.build(frame);
-        let (film, non_finite, mut stats) =
-            self.trace(&scene, &self.settings, frame, (control, deadline), watch);
+        let mut stats = self.trace(&scene, &self.settings, canvas, (control, deadline), watch);
+        let non_finite = lost::find(canvas, &scene, frame, &self.settings.trace);
         self.builder.give_back(scene);
         stats.bytes = times.bytes;
         stats.stages = Stages {
@@ -174,8 +207,7 @@ impl Renderer {
             bvh: times.bvh,
             ..stats.stages
         };
-        Rendering {
-            film,
+        Traced {
             metadata: self.metadata_of(frame, stats.spp),
             stats,
             non_finite,
@@ -191,33 +223,36 @@ impl Renderer {
             noise: None,
             ..settings.clone()
         };
+        let canvas = Canvas::new(&settings, &Share::default());
         let limits = (&Control::default(), None);
-        let (film, _, stats) = self.trace(scene, &settings, scene.frame, limits, |_, _, _| ());
-        (film, stats)
+        let stats = self.trace(scene, &settings, &canvas, limits, |_, _| ());
+        (canvas.into_film(), stats)
     }
 
     fn trace(
         &self,
         scene: &FlatScene,
         settings: &Settings,
-        frame: u32,
+        canvas: &Canvas,
         (control, deadline): (&Control, Option<Deadline>),
-        mut watch: impl FnMut(&[Tile], u32, Duration) + Send,
-    ) -> (Film, Vec<NonFinite>, Stats) {
-        let (width, height) = settings.size;
+        mut watch: impl FnMut(u32, Duration) + Send,
+    ) -> Stats {
         let start = Instant::now();
+        let known = canvas.verdict();
+        let ask = |wanted| self.ask_pilot(wanted, scene, control, deadline);
         let verdict = settings
             .noise
-            .map(|wanted| self.ask_pilot(wanted, scene, control, deadline));
+            .map(|wanted| *canvas.verdict.get_or_init(|| ask(wanted)));
         let piloted = start.elapsed();
-        let goal = verdict.map_or(settings.spp, |verdict| verdict.spp);
+        let end = canvas.end.unwrap_or(settings.spp);
+        let goal = verdict.map_or(end, |verdict| verdict.spp);
         let pilot = verdict.map_or(0, |verdict| verdict.pilot);
-        let pixels = u64::from(width) * u64::from(height);
-        control.expect(pixels * (u64::from(pilot) + u64::from(goal)));
-        let mut tiles = tiles::cut(settings.size, settings.tile, settings.trace.sampler);
-        let passes = Passes::new(0, goal, deadline);
-        let watch = |tiles: &[Tile], spp| watch(tiles, spp, start.elapsed());
-        let spp = self.run(scene, &settings.trace, &mut tiles, (passes, control), watch);
+        let piloted_now = if known.is_some() { 0 } else { pilot };
+        let pixels = u64::from(settings.size.0) * u64::from(settings.size.1);
+        control.expect(pixels * u64::from(piloted_now) + canvas.missing(goal));
+        let passes = Passes::new(canvas.done().0, goal, deadline);
+        let watch = |spp| watch(spp, start.elapsed());
+        let spp = self.run(scene, &settings.trace, canvas, (passes, control), watch);
         let mut stats = Stats {
             threads: self.pool.current_num_threads(),
             // A deadline ends before all samples too, but on purpose.
@@ -233,12 +268,12 @@ impl Renderer {
         };
         stats.stages.pilot = piloted;
         stats.stages.trace = start.elapsed() - piloted;
-        for tile in &tiles {
-            stats.closest_rays += tile.sums.rays[0];
-            stats.occlusion_rays += tile.sums.rays[1];
+        for tile in &canvas.tiles {
+            let rays = lock(tile).rays;
+            stats.closest_rays += rays[0];
+            stats.occlusion_rays += rays[1];
         }
-        let non_finite = lost::find(&tiles, scene, frame, &settings.trace);
-        (assemble(width, height, tiles), non_finite, stats)
+        stats
     }
 
     /// How many samples the wanted error takes.
@@ -251,12 +286,11 @@ impl Renderer {
     ) -> Verdict {
         let settings = &self.settings;
         let options = pilot::options(&settings.trace);
-        let tiles = tiles::cut(settings.size, settings.tile, options.sampler);
+        let canvas = Canvas::new(settings, &Share::default());
         let most = settings.spp;
-        let run = |tiles: &mut [Tile], passes| {
-            self.run(scene, &options, tiles, (passes, control), |_, _| ())
-        };
-        pilot::ask(wanted, most, settings.size, tiles, control, deadline, run)
+        let run =
+            |canvas: &Canvas, passes| self.run(scene, &options, canvas, (passes, control), |_| ());
+        pilot::ask(wanted, most, settings.size, &canvas, control, deadline, run)
     }
 
     /// Traces passes on the threads; gives the samples that are complete.
@@ -264,12 +298,12 @@ impl Renderer {
         &self,
         scene: &FlatScene,
         options: &TraceOptions,
-        tiles: &mut [Tile],
+        canvas: &Canvas,
         (passes, control): (Passes, &Control),
-        watch: impl FnMut(&[Tile], u32) + Send,
+        watch: impl FnMut(u32) + Send,
     ) -> u32 {
         self.pool.install(|| {
-            tiles::run(tiles, passes, control, watch, || {
+            tiles::run(&canvas.tiles, passes, control, watch, || {
                 let mut tracer = Tracer::new(scene, options);
                 move |rect, samples, sums: &mut _| tracer.trace_tile(rect, samples, sums)
             })
@@ -293,44 +327,5 @@ fn build_options(desc: &SceneDesc, settings: &Settings) -> BuildOptions {
         },
         uv_aov: settings.trace.ids,
         fresnel: settings.trace.fresnel,
-    }
-}
-
-/// Puts tiles together, one after the other, so that their memory is given back on the way.
-pub(super) fn assemble(width: u32, height: u32, tiles: impl IntoIterator<Item = Tile>) -> Film {
-    let mut film = Film::new(width, height);
-    for tile in tiles {
-        if !tile.sums.count.is_empty() {
-            film.put(window(tile.rect), &planes(tile.sums, tile.blocks));
-        }
-    }
-    film
-}
-
-fn window(rect: Rect) -> Window {
-    Window {
-        x: rect.x,
-        y: rect.y,
-        width: rect.width,
-        height: rect.height,
-    }
-}
-
-/// Moves the arrays: tracing may not know the film, nor the film tracing.
-fn planes(sums: TileSums, blocks: Option<Blocks>) -> Planes {
-    Planes {
-        rgb: sums.rgb,
-        rgb_squared: sums.rgb_squared,
-        gains: blocks.map(Blocks::means).unwrap_or_default(),
-        count: sums.count,
-        non_finite: sums.non_finite,
-        hit_count: sums.hit_count,
-        albedo: sums.albedo,
-        normal: sums.normal,
-        geonormal: sums.geonormal,
-        depth: sums.depth,
-        uv: sums.uv,
-        prim: sums.prim,
-        entity: sums.entity,
     }
 }

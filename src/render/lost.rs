@@ -3,7 +3,7 @@
 //! The rule: such a sample is counted and left out, of the sums and of the count that they are divided by, so that a pixel
 //! is the mean of its finite samples. A pixel without any is black.
 
-use super::tiles::Tile;
+use super::Canvas;
 use crate::flat::FlatScene;
 use crate::trace::{TileSums, TraceOptions, replay};
 
@@ -23,20 +23,19 @@ pub struct NonFinite {
 /// The first [`TileSums::MAX_LOST`] of an image, by row, column and index. Tracing keeps no record of bounces: these few are
 /// traced once more to find theirs.
 pub(super) fn find(
-    tiles: &[Tile],
+    canvas: &Canvas,
     scene: &FlatScene,
     frame: u32,
     options: &TraceOptions,
 ) -> Vec<NonFinite> {
-    let mut all: Vec<(u32, u32, u32)> = tiles
-        .iter()
-        .flat_map(|Tile { rect, sums, .. }| {
-            sums.lost.iter().map(move |lost| {
-                let [x, y] = [lost.pixel % rect.width, lost.pixel / rect.width];
-                (rect.y + y, rect.x + x, lost.sample)
-            })
-        })
-        .collect();
+    let mut all: Vec<(u32, u32, u32)> = Vec::new();
+    for patch in canvas.patches() {
+        let w = patch.window;
+        all.extend(patch.lost.iter().map(|[pixel, sample]| {
+            let [x, y] = [pixel % w.width, pixel / w.width];
+            (w.y + y, w.x + x, *sample)
+        }));
+    }
     all.sort_unstable();
     all.truncate(TileSums::MAX_LOST);
     all.into_iter()

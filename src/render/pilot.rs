@@ -5,8 +5,7 @@
 //! a mean of n samples as any other. And n depends on scene, frame and seed alone.
 
 use super::passes::{Deadline, Passes};
-use super::tiles::Tile;
-use super::{Control, frame};
+use super::{Canvas, Control};
 use crate::trace::TraceOptions;
 
 /// Samples of the shortest pilot.
@@ -24,11 +23,11 @@ const TIME: f64 = 0.125;
 
 /// What the pilot found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Verdict {
+pub struct Verdict {
     /// Samples per pixel that reach the error, or the most there may be.
-    pub(super) spp: u32,
+    pub spp: u32,
     /// Samples per pixel of the pilot.
-    pub(super) pilot: u32,
+    pub pilot: u32,
 }
 
 /// The pilot's own numbers: another seed, and nothing beside the radiance.
@@ -48,10 +47,10 @@ pub(super) fn ask(
     wanted: f64,
     most: u32,
     size: (u32, u32),
-    mut tiles: Vec<Tile>,
+    canvas: &Canvas,
     control: &Control,
     deadline: Option<Deadline>,
-    trace: impl Fn(&mut [Tile], Passes) -> u32,
+    trace: impl Fn(&Canvas, Passes) -> u32,
 ) -> Verdict {
     let pixels = u64::from(size.0) * u64::from(size.1);
     let deadline = deadline.map(|deadline| deadline.part(TIME));
@@ -59,9 +58,9 @@ pub(super) fn ask(
     loop {
         let goal = (2 * pilot).max(SHORTEST);
         control.expect(pixels * u64::from(goal + most.min(goal.saturating_mul(PART))));
-        let complete = trace(&mut tiles, Passes::new(pilot, goal, deadline));
-        let film = frame::assemble(size.0, size.1, tiles.iter().cloned());
-        let spp = film
+        let complete = trace(canvas, Passes::new(pilot, goal, deadline));
+        let spp = canvas
+            .film()
             .error()
             .map_or(most, |bar| bar.samples_for(wanted, FEWEST, most));
         let verdict = Verdict {
