@@ -23,6 +23,19 @@ pub(crate) fn run(args: &AnimateArgs) -> Result<(), Failure> {
     let animation = &loaded.desc.animation;
     let scenes = || FrameList::of_range(animation.frames.clone());
     let frames = args.frames.clone().unwrap_or_else(scenes);
+    let frames = match args.shard {
+        None => frames,
+        Some(shard) => {
+            let (index, count) = shard.here()?;
+            let Some(own) = frames.share(index, count) else {
+                say(&format!(
+                    "{frames}; none of them is in share {index} of {count}"
+                ));
+                return Ok(());
+            };
+            own
+        }
+    };
     let settings = dials.settings(&loaded.desc, args.spp);
     let (gif, y4m) = (args.gif.as_deref(), args.y4m.as_deref());
     let (size, fps) = (settings.size, animation.fps);

@@ -2,6 +2,7 @@
 
 use super::dial_args::DialArgs;
 use super::frame_list::FrameList;
+use super::part_args::ShardArg;
 use crate::scene::RenderDesc;
 use clap::{Args, value_parser};
 use std::path::PathBuf;
@@ -13,12 +14,14 @@ Examples:
   luxel animate spin.ron                           spin_0000.png and so on, the frames that the scene names
   luxel animate spin.ron --frames 0..48:4 --spp 4  every fourth, quickly
   luxel animate spin.ron -o out/f_####.exr --gif spin.gif
+  luxel animate spin.ron --shard 0/4               every fourth frame, and another machine those of 1/4
   luxel animate spin.ron --y4m - | ffmpeg -i - -pix_fmt yuv420p -colorspace bt709 spin.mp4
 
 Frame K shows the scene at K / fps seconds and is the file that `luxel render --frame K` writes. Frames appear whole
 (NAME.partial until they are), and those that are there from before are kept if they were made of the same scene, files
 and settings; others are an error, unless --overwrite. So the same line goes on where it was stopped: Ctrl-C exits
-with 75, a full disk with 74. Films are made of the frames' files, and made anew each time.")]
+with 75, a full disk with 74. Films are made of the frames' files, and made anew each time: where shares of them were
+rendered, the line without --shard makes the film of all.")]
 pub(crate) struct AnimateArgs {
     /// The scene file (RON)
     pub(crate) scene: PathBuf,
@@ -35,6 +38,9 @@ pub(crate) struct AnimateArgs {
     /// Make an uncompressed film of them too, frame by frame; - is stdout, for an encoder
     #[arg(long, value_name = "FILE.y4m")]
     pub(crate) y4m: Option<PathBuf>,
+    /// Render share I of N of the frames, from 0: 0/4, or auto or auto/4, as the scheduler says
+    #[arg(long, value_name = "I/N", conflicts_with_all = ["gif", "y4m"])]
+    pub(crate) shard: Option<ShardArg>,
     /// Render all frames anew, whatever is there
     #[arg(long)]
     pub(crate) overwrite: bool,

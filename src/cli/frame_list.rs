@@ -20,6 +20,14 @@ impl FrameList {
         FrameList(range.collect())
     }
 
+    /// Every `count`-th frame from the one at `index` on, so that each share has its part of what costs most; `None` if
+    /// that is none.
+    pub(crate) fn share(&self, index: u32, count: u32) -> Option<FrameList> {
+        let own = self.iter().skip(index as usize).step_by(count as usize);
+        let own: Vec<u32> = own.collect();
+        (!own.is_empty()).then_some(FrameList(own))
+    }
+
     /// How many.
     pub(crate) fn len(&self) -> u32 {
         self.0.len() as u32

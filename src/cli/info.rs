@@ -118,9 +118,15 @@ fn of_part(path: &Path, file: &PartFile) -> Found {
         held.done = [held.done[0].min(entry.done), held.done[1].max(entry.done)];
     }
     let image = image_of(path).unwrap_or_else(|| "OUTPUT".into());
-    let share = match (header.value("part.samples"), header.value("part.tiles")) {
-        (Some(samples), _) => format!(" --samples-range {samples}"),
-        (_, Some(tiles)) => format!(" --shard {} --shard-by tiles", tiles.replace(" of ", "/")),
+    let value = |key| header.value(key);
+    let share = match (
+        value("part.shard"),
+        value("part.tiles"),
+        value("part.samples"),
+    ) {
+        (Some(shard), ..) => format!(" --shard {shard}"),
+        (_, Some(shard), _) => format!(" --shard {shard} --shard-by tiles"),
+        (.., Some(samples)) => format!(" --samples-range {samples}"),
         _ => " --checkpoint 60s".to_owned(),
     };
     let aovs = aovs_of(header).unwrap_or_default();

@@ -14,7 +14,13 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 /// What a share says of itself that another of the same render says otherwise.
-const FREE: &[&str] = &["part.samples", "part.tiles", "part.noise", "part.pilot"];
+const FREE: &[&str] = &[
+    "part.shard",
+    "part.samples",
+    "part.tiles",
+    "part.noise",
+    "part.pilot",
+];
 
 /// Puts the parts together and writes the image.
 pub(crate) fn run(args: &MergeArgs) -> Result<(), Failure> {

@@ -273,7 +273,7 @@ fn share_of(
     by: Option<ShardBy>,
     settings: &Settings,
 ) -> Result<Shared, Failure> {
-    let words = format!("{index} of {count}");
+    let words = format!("{index}/{count}");
     let suffix = format!(".{index}-of-{count}");
     let (width, height) = settings.size;
     if by == Some(ShardBy::Tiles) {

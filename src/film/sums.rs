@@ -26,17 +26,22 @@ impl Sums {
         add(&mut self.depth, &next.depth);
     }
 
-    /// Gives what there is and leaves zeros.
-    pub(super) fn take(&mut self) -> Sums {
+    /// As many zeros.
+    pub(super) fn zeros(&self) -> Sums {
         let zeros = |from: &Vec<[f64; 3]>| vec![[0.0; 3]; from.len()];
-        let zeros = Sums {
+        Sums {
             rgb: zeros(&self.rgb),
             rgb_squared: zeros(&self.rgb_squared),
             albedo: zeros(&self.albedo),
             normal: zeros(&self.normal),
             geonormal: zeros(&self.geonormal),
             depth: vec![0.0; self.depth.len()],
-        };
+        }
+    }
+
+    /// Gives what there is and leaves zeros.
+    pub(super) fn take(&mut self) -> Sums {
+        let zeros = self.zeros();
         std::mem::replace(self, zeros)
     }
 

@@ -16,7 +16,11 @@ pub(super) fn put_patch(into: &mut Vec<u8>, patch: &Patch) {
     put_array(into, &patch.prim);
     put_array(into, &patch.entity);
     put_array(into, patch.lost.as_flattened());
-    put_sums(into, &patch.open);
+    match patch.done.is_multiple_of(Blocks::LENGTH) {
+        // Zeros, which the reader makes as well.
+        true => put_sums(into, &Sums::default()),
+        false => put_sums(into, &patch.open),
+    }
     put_levels(into, &patch.blocks.early);
     put_array(into, patch.blocks.middle.as_flattened());
     put(into, &[patch.blocks.nodes.len() as u32]);
@@ -85,11 +89,15 @@ pub(super) fn patch(bytes: &[u8]) -> Option<Patch> {
     let uv = pairs(bytes.array(2 * pixels)?);
     let [prim, entity] = [bytes.array(pixels)?, bytes.array(pixels)?];
     let lost = pairs(bytes.list()?);
-    let open = bytes.sums(pixels)?;
+    let mut open = bytes.sums(pixels)?;
     let early = bytes.levels(pixels)?;
     let middle = triples(bytes.array(3 * pixels)?);
     let [nodes] = bytes.some()?;
     let nodes: Option<Vec<Node>> = (0..nodes).map(|_| bytes.node(pixels)).collect();
+    let nodes = nodes?;
+    if let (true, Some(node)) = (open.rgb.is_empty(), nodes.last()) {
+        open = node.sums.zeros();
+    }
     let patch = Patch {
         window,
         first,
@@ -103,7 +111,7 @@ pub(super) fn patch(bytes: &[u8]) -> Option<Patch> {
         lost,
         open,
         blocks: Blocks {
-            nodes: nodes?,
+            nodes,
             early,
             middle,
             independent: independent != 0,
