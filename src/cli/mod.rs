@@ -36,6 +36,7 @@ mod render;
 mod replay;
 mod replay_args;
 mod sequence;
+mod share;
 mod stability;
 mod stability_args;
 mod start;

@@ -3,11 +3,10 @@
 use super::args::RenderArgs;
 use super::failure::Failure;
 use super::output::{Output, check_writable};
-use super::part_args::ShardBy;
-use super::say;
 use super::sequence::difference_of;
+use super::{say, share};
 use crate::film::part::{PartError, PartFile, PartWriter, encode_patch};
-use crate::film::{Blocks, Metadata, write_streamed};
+use crate::film::{Metadata, write_streamed};
 use crate::render::{Canvas, Control, Renderer, Settings, Share, Traced, Verdict};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -42,16 +41,8 @@ impl Part {
     ) -> Result<Option<Part>, Failure> {
         let parts = &args.parts;
         let (share, suffix, own) = match (parts.shard, &parts.samples_range) {
-            (Some(shard), _) => share_of(shard.here()?, parts.shard_by, settings)?,
-            (None, Some(range)) => {
-                check_range(range, settings.spp)?;
-                let share = Share {
-                    samples: Some(range.clone()),
-                    tiles: None,
-                };
-                let words = format!("{}..{}", range.start, range.end);
-                (share, format!(".{words}"), vec![("part.samples", words)])
-            }
+            (Some(shard), _) => share::of_all(shard.here()?, parts.shard_by, settings)?,
+            (None, Some(range)) => share::of_range(range, settings.spp)?,
             (None, None) if parts.checkpoint.is_some() => Default::default(),
             (None, None) => return Ok(None),
         };
@@ -132,14 +123,14 @@ impl Part {
         if !traced.stats.stopped {
             return Ok(traced);
         }
-        let goal = match self.share.samples.as_ref().map(|range| range.start) {
+        let there = match self.share.samples.as_ref().map(|range| range.start) {
             Some(start) => format!("samples {start}..{} of each pixel", canvas.done().0),
             None => format!("{} samples per pixel", canvas.done().0),
         };
         say(&match nothing {
             true => "stopped before the first sample; the same line begins again".to_owned(),
             false => format!(
-                "stopped; {} has {goal}, and the same line goes on",
+                "stopped; {} has {there}, and the same line goes on",
                 self.path.display()
             ),
         });
@@ -264,68 +255,6 @@ impl Part {
 }
 
 const ANEW: &str = "write elsewhere with -o, or give --overwrite to begin anew";
-
-/// The share, the suffix of its name, and what its header says of it.
-type Shared = (Share, String, Vec<(&'static str, String)>);
-
-fn share_of(
-    (index, count): (u32, u32),
-    by: Option<ShardBy>,
-    settings: &Settings,
-) -> Result<Shared, Failure> {
-    let words = format!("{index}/{count}");
-    let suffix = format!(".{index}-of-{count}");
-    let (width, height) = settings.size;
-    if by == Some(ShardBy::Tiles) {
-        let tiles = width.div_ceil(settings.tile) * height.div_ceil(settings.tile);
-        if count > tiles {
-            return Err(Failure::usage(
-                format!("{tiles} tiles are not enough for {count} shares"),
-                "make fewer shares, or smaller tiles: --tile 16",
-            ));
-        }
-        let share = Share {
-            samples: None,
-            tiles: Some((index, count)),
-        };
-        return Ok((share, suffix, vec![("part.tiles", words)]));
-    }
-    let end = |index| Blocks::share(settings.spp, (index, count));
-    let samples = end(index)..end(index + 1);
-    if (0..count).any(|index| end(index) == end(index + 1)) {
-        return Err(Failure::usage(
-            format!(
-                "{} samples are not enough for {count} shares: they are cut into blocks of {}",
-                settings.spp,
-                Blocks::LENGTH
-            ),
-            "make fewer shares, or share the tiles: --shard-by tiles",
-        ));
-    }
-    let own = vec![(
-        "part.samples",
-        format!("{}..{}", samples.start, samples.end),
-    )];
-    let share = Share {
-        samples: Some(samples),
-        tiles: None,
-    };
-    Ok((share, suffix, own))
-}
-
-fn check_range(range: &std::ops::Range<u32>, spp: u32) -> Result<(), Failure> {
-    let block = Blocks::LENGTH;
-    if range.end > spp || !range.start.is_multiple_of(block) || !Blocks::may_end(range.end, spp) {
-        return Err(Failure::usage(
-            format!(
-                "samples {}..{} are no share of {spp}",
-                range.start, range.end
-            ),
-            &format!("begin and end at multiples of {block}, or at the end, {spp}"),
-        ));
-    }
-    Ok(())
-}
 
 /// The image that a part film belongs to, by its name.
 pub(crate) fn image_of(part: &Path) -> Option<PathBuf> {
