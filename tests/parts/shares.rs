@@ -131,7 +131,7 @@ fn lines_that_make_no_share_are_told() {
         ("--samples-range 0..12 --spp 64", "multiples of 8"),
         ("--samples-range 0..72 --spp 64", "multiples of 8"),
         ("--samples-range 0..8", "--spp"),
-        ("--checkpoint 0s", "60s"),
+        ("--checkpoint 0s", "30s"),
     ] {
         folder.expect(&format!("render s.ron {line}"), 2, &[words]);
     }
