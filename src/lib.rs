@@ -20,7 +20,7 @@
 //! | [`build`] | `&World` | [`flat::FlatScene`]: extract, flatten, tree, linearize | files, pixels |
 //! | [`flat`] | | **data only**: lane blocks, cold shading arrays, materials, lights, camera, tree, needs | hecs, io, rayon |
 //! | [`trace`] | `&FlatScene` | sums of radiance samples of a tile; infallible loops over SoA path state | hecs, files, rayon |
-//! | [`film`] | sums | statistics, tone mapping, writers | scenes |
+//! | [`film`] | sums | statistics, tone mapping, writers; films that still grow, as files | scenes |
 //! | [`render`] | world, settings | drives build → trace → film over tiles and frames | |
 //! | [`measure`] | images and references; subjects, rays and arms; a world at other sizes and places | error statistics, FLIP, heat maps; traversal timed and judged; what exactness costs; what goes wrong first; what dials cost and err | what error is too much |
 //! | [`check`] | a `SceneDesc`, its world and store | warnings of what is probably not meant, all at once | pixels |
@@ -38,8 +38,9 @@
 //! 2. **A frame is a pure function of (scene, frame number)**; nothing accumulates from frame to frame. Whether a mesh is
 //!    flattened or instanced is decided from the scene alone.
 //! 3. **A sample is a pure function of (scene, frame, pixel, sample index, dimension, seed)**, and a pixel is its samples
-//!    added in f64 in the order of their index. Threads, tile size and order, SIMD width, tree shape and hecs's storage
-//!    order change no bit of the image.
+//!    added in f64: blocks of eight in the order of their index, and the blocks as a binary tree over theirs. Threads, tile
+//!    size and order, SIMD width, tree shape and hecs's storage order change no bit of the image; nor does it matter how often
+//!    a render was taken up again, or who traced which of its blocks.
 //! 4. **No absolute epsilon in the geometry.** Each hit carries its own error bound, from which rays leave. A candidate's t is
 //!    clamped into its primitive's own widened slab interval before it is compared by (t, id), and every box on the way
 //!    contains that interval: no ancestor can cull a hit, so the tree's shape cannot matter.
@@ -101,6 +102,13 @@
 //! * Tracing records no bounces of samples that are not finite: the few that are listed are replayed.
 //! * Error bars come from blocks of the one sequence of samples that a pixel has, not from replicates of it, which would cost
 //!   convergence and other bits.
+//! * Samples add up as a tree over blocks of eight, not in one row, and a part film holds the nodes of that tree. Sums without
+//!   rounding (bins by exponent) would have merged in any order, but take twice the memory, which the tree only takes while
+//!   its nodes wait for their halves; and error bars need the nodes' means anyway.
+//! * A stop does not wait for the end of a pass, which may be minutes away: every tile is saved as far as it is, by itself. So
+//!   saving needs no pause either: it locks one tile after the other while the others are traced.
+//! * `--time` goes on by its own measure: each run adds its time to the part that is there.
+//! * Without `--checkpoint`, Ctrl-C still writes `NAME.partial.png` and exits with 130, which nothing goes on from.
 //! * `--noise` and `--time` without `--spp` do not stop at the scene's samples.
 //! * `world::AuthoringIndex` is a pair, entity and node, since one entity of a scene may stand for a file's many.
 //! * What moved is not asked of hecs's `ChangeTracker`: it compares with clones, as comparing what was extracted with the

@@ -29,6 +29,8 @@ pub(crate) struct Part {
     /// Keys and values of the header that are not the image's.
     own: Vec<(&'static str, String)>,
     noise: Option<f64>,
+    /// Whether a time ends it, so that nobody knows how many samples there will be.
+    timed: bool,
     overwrite: bool,
 }
 
@@ -70,6 +72,7 @@ impl Part {
             every: parts.checkpoint,
             own,
             noise: settings.noise,
+            timed: settings.time.is_some(),
             overwrite: parts.overwrite,
         };
         part.own.push((
@@ -153,7 +156,10 @@ impl Part {
 
     /// Writes the part film, tile by tile, while others are traced.
     fn save(&self, header: &Metadata, canvas: &Canvas, go_on: impl Fn() -> bool) -> io::Result<()> {
-        let header = self.header(header, canvas.verdict());
+        let mut header = self.header(header, canvas.verdict());
+        if self.timed {
+            header.replace("spp", canvas.done().1);
+        }
         write_streamed(&self.path, |file| {
             let out = BufWriter::new(file);
             let mut part = PartWriter::begin(out, &header, canvas.len() as u32)?;

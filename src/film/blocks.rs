@@ -113,20 +113,22 @@ impl Blocks {
     }
 
     /// Looks at `open`, the sums of the block that is not complete yet, when there are `samples` samples, which is one of those
-    /// that [`Blocks::next`] gives. If the block ends there, they are taken, and zeros left.
-    pub(super) fn take(&mut self, samples: u32, open: &mut Sums) {
+    /// that [`Blocks::next`] gives. If the block ends there, they are taken, and zeros left, in the memory of `spare`, which is
+    /// then that of what was added up.
+    pub(super) fn take(&mut self, samples: u32, open: &mut Sums, spare: &mut Sums) {
         if samples <= BLOCK && !self.independent {
             self.look_early(samples, &open.rgb);
         }
         if samples.is_multiple_of(BLOCK) {
             self.middle = Vec::new();
             let squares = std::mem::take(&mut self.early);
-            self.push(Node {
+            let node = Node {
                 first: samples - BLOCK,
                 level: BLOCK_LEVEL,
-                sums: open.take(),
+                sums: open.take(spare),
                 squares,
-            });
+            };
+            self.push(node, spare);
         }
         let lowest = lowest(samples);
         let kept = self.nodes.iter_mut().map(|node| &mut node.squares);
@@ -148,15 +150,17 @@ impl Blocks {
 
     /// Adds runs of later samples.
     pub(super) fn append(&mut self, next: Blocks) {
-        next.nodes.into_iter().for_each(|node| self.push(node));
+        for node in next.nodes {
+            self.push(node, &mut Sums::default());
+        }
         self.early = next.early;
         self.middle = next.middle;
     }
 
-    /// Adds a node behind all others, and makes one of two as long as there are halves.
-    pub(super) fn push(&mut self, mut node: Node) {
+    /// Adds a node behind all others, and makes one of two as long as there are halves. Memory that is over goes to `spare`.
+    fn push(&mut self, mut node: Node, spare: &mut Sums) {
         while let Some(left) = self.nodes.pop_if(|left| left.is_left_of(&node)) {
-            node = left.join(node, self.independent);
+            (node, *spare) = left.join(node, self.independent);
         }
         self.nodes.push(node);
     }
@@ -237,8 +241,8 @@ impl Node {
             && u64::from(self.first) + length == u64::from(right.first)
     }
 
-    /// The run of both.
-    fn join(mut self, right: Node, independent: bool) -> Node {
+    /// The run of both, and the sums that are no longer needed.
+    fn join(mut self, right: Node, independent: bool) -> (Node, Sums) {
         if !independent {
             // 2ᵏ⁺¹ = twice the samples of a half: of the difference of means, a half.
             let scale = 0.5 / (1u64 << self.level) as f64;
@@ -258,7 +262,7 @@ impl Node {
         }
         self.sums.add(&right.sums);
         self.level += 1;
-        self
+        (self, right.sums)
     }
 }
 

@@ -47,9 +47,10 @@ impl Patch {
     }
 
     /// Takes note that `open` has all samples up to `end`, which lies no further than [`Blocks::next`] of what it had.
-    pub fn advance(&mut self, end: u32) {
+    /// `spare` is memory from one call to the next; its numbers are of no importance.
+    pub fn advance(&mut self, end: u32, spare: &mut Sums) {
         if end == Blocks::next(self.done) {
-            self.blocks.take(end, &mut self.open);
+            self.blocks.take(end, &mut self.open, spare);
         }
         self.done = end;
     }

@@ -39,9 +39,18 @@ impl Sums {
         }
     }
 
-    /// Gives what there is and leaves zeros.
-    pub(super) fn take(&mut self) -> Sums {
-        let zeros = self.zeros();
+    /// Gives what there is and leaves zeros, in the memory of `spare` if it is as large.
+    pub(super) fn take(&mut self, spare: &mut Sums) -> Sums {
+        let mut zeros = std::mem::take(spare);
+        let lengths = |sums: &Sums| (sums.triples().map(Vec::len), sums.depth.len());
+        if lengths(&zeros) == lengths(self) {
+            for array in zeros.triples_mut() {
+                array.fill([0.0; 3]);
+            }
+            zeros.depth.fill(0.0);
+        } else {
+            zeros = self.zeros();
+        }
         std::mem::replace(self, zeros)
     }
 

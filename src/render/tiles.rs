@@ -29,9 +29,9 @@ where
     while let Some(pass) = passes.next_pass() {
         let next = AtomicUsize::new(0);
         rayon::broadcast(|_| {
-            let mut trace = worker();
+            let (mut trace, mut spare) = (worker(), Sums::default());
             while let Some(tile) = tiles.get(next.fetch_add(1, Ordering::Relaxed)) {
-                trace_pass(&mut lock(tile), &pass, control, &mut trace);
+                trace_pass(&mut lock(tile), &pass, control, &mut trace, &mut spare);
             }
         });
         if control.stopped() || pass.until.is_some() {
@@ -50,6 +50,7 @@ fn trace_pass(
     pass: &Pass,
     control: &Control,
     trace: &mut impl FnMut(Rect, Range<u32>, &mut TileSums),
+    spare: &mut Sums,
 ) {
     let Tile { patch, rays } = tile;
     let rect = rect(patch.window);
@@ -62,7 +63,7 @@ fn trace_pass(
         rays[0] += sums.rays[0];
         rays[1] += sums.rays[1];
         take_back(patch, sums);
-        patch.advance(samples.end);
+        patch.advance(samples.end, spare);
         control.add(pixels * samples.len() as u64);
     }
 }
@@ -187,6 +188,7 @@ mod tests {
                 },
                 &Control::default(),
                 &mut fake,
+                &mut Sums::default(),
             );
             assert_eq!(canvas.done(), (at, at + 3));
             let patches = canvas.patches().map(|patch| patch.clone()).collect();

@@ -12,7 +12,7 @@ fn of(first: u32, end: u32) -> (Blocks, Sums) {
         rgb: vec![[0.0; 3]; 2],
         ..Sums::default()
     };
-    let mut done = first;
+    let (mut done, mut spare) = (first, Sums::default());
     while done < end {
         let next = Blocks::next(done);
         for s in done..next.min(end) {
@@ -20,7 +20,7 @@ fn of(first: u32, end: u32) -> (Blocks, Sums) {
         }
         done = next.min(end);
         if done == next {
-            blocks.take(done, &mut open);
+            blocks.take(done, &mut open, &mut spare);
         }
     }
     (blocks, open)
@@ -130,7 +130,7 @@ fn independent_samples_are_not_compared() {
     let mut open = Sums::default();
     for end in [1, 2, 4, 8, 16, 24] {
         open.rgb = vec![[1.0; 3]];
-        blocks.take(end, &mut open);
+        blocks.take(end, &mut open, &mut Sums::default());
     }
     assert!(
         blocks

@@ -33,7 +33,7 @@ fn patch(window: Window) -> Patch {
             geonormal: triples(1e-300),
             depth: vec![7.0; pixels],
         };
-        patch.advance(end);
+        patch.advance(end, &mut Sums::default());
     }
     patch.count = vec![11; pixels];
     patch.non_finite = vec![1; pixels];
