@@ -81,6 +81,8 @@ const RULES: &[Rule] = &[
             "ctrlc",
             "hecs",
             "indicatif",
+            // The number of its threads alone.
+            "rayon",
             "serde_json",
             "strsim",
         ],

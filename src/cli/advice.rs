@@ -1,6 +1,7 @@
 //! The one change that would make a render like this one cheapest, with what it would bring.
 
 use super::stats::Account;
+use super::threads;
 use crate::build::Quality;
 
 /// What `--tree fast` leaves of the time that trees take, and what it adds to that of the rays ([`Quality::Fast`]).
@@ -32,10 +33,10 @@ pub(crate) fn of(account: &Account<'_>, tree_quality: Quality) -> String {
         let saved = (1.0 - FAST_TREE) * tree - SLOWER_RAYS * trace;
         propose("--tree fast".to_owned(), saved);
     }
-    let machine = std::thread::available_parallelism().map_or(1, usize::from);
-    if account.stats.threads < machine {
-        let share = account.stats.threads as f64 / machine as f64;
-        let what = format!("--threads {machine}, all that the machine has");
+    let allotted = threads::allotted();
+    if account.stats.threads < allotted {
+        let share = account.stats.threads as f64 / allotted as f64;
+        let what = format!("--threads {allotted}, all that there are");
         propose(what, (1.0 - share) * trace);
     }
     let most = changes

@@ -75,6 +75,20 @@ pub(crate) enum Command {
     Info(InfoArgs),
 }
 
+impl Command {
+    /// `--threads`, of those that have it.
+    pub(crate) fn threads(&self) -> Option<u16> {
+        match self {
+            Command::Render(args) => args.dials.threads,
+            Command::Animate(args) => args.dials.threads,
+            Command::Turntable(args) => args.threads,
+            Command::Stability(args) => args.threads,
+            Command::Tune(args) => args.threads,
+            _ => None,
+        }
+    }
+}
+
 /// `luxel render`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "\

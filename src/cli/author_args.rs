@@ -47,7 +47,7 @@ pub(crate) struct TurntableArgs {
     /// Most memory that the files may take: 512M, 8G
     #[arg(long, value_name = "SIZE", default_value = "4G", value_parser = parse_memory)]
     pub(crate) max_memory: u64,
-    /// Worker threads [default: all that the machine offers]
+    /// Worker threads [default: what Slurm, else affinity and cgroup leave to the process]
     #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
 }

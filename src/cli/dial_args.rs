@@ -28,7 +28,7 @@ pub(crate) struct DialArgs {
     /// Where random numbers come from
     #[arg(long, value_enum, default_value_t = SamplerArg::Sobol)]
     pub(crate) sampler: SamplerArg,
-    /// Worker threads [default: all that the machine offers]
+    /// Worker threads [default: what Slurm, else affinity and cgroup leave to the process]
     #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
     /// Instruction set: scalar, sse2, avx2, avx512 [default: the best that this machine has]

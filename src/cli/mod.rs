@@ -41,6 +41,7 @@ mod stability;
 mod stability_args;
 mod start;
 mod stats;
+mod threads;
 mod tune;
 mod tune_args;
 mod tuned;
@@ -61,6 +62,7 @@ pub fn run() -> ExitCode {
     install_panic_hook();
     // Usage errors, help and version leave here: 2, 0, 0.
     let cli = Cli::parse();
+    threads::allot(cli.command.threads());
     let done = match &cli.command {
         Command::Render(args) => render::run(args),
         Command::Animate(args) => animate::run(args),

@@ -42,7 +42,7 @@ pub(crate) struct StabilityArgs {
     /// Frame number
     #[arg(long, value_name = "K", default_value_t = 0)]
     pub(crate) frame: u32,
-    /// Worker threads [default: all that the machine offers]
+    /// Worker threads [default: what Slurm, else affinity and cgroup leave to the process]
     #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
     /// Write all numbers as comma-separated values

@@ -77,10 +77,8 @@ impl Renderer {
         store: &AssetStore,
         settings: Settings,
     ) -> Result<Renderer, ThreadPoolBuildError> {
-        // 0 lets rayon ask the machine.
-        let pool = ThreadPoolBuilder::new()
-            .num_threads(settings.threads.unwrap_or(0))
-            .build()?;
+        let threads = settings.threads.unwrap_or_else(rayon::current_num_threads);
+        let pool = ThreadPoolBuilder::new().num_threads(threads).build()?;
         let options = build_options(desc, &settings);
         Ok(Renderer {
             filter: options.filter,

@@ -17,7 +17,7 @@ pub struct Settings {
     pub noise: Option<f64>,
     /// Stop when this is over, if that comes first; at least one sample per pixel is traced.
     pub time: Option<Duration>,
-    /// Worker threads; as many as the machine offers if not said.
+    /// Worker threads; as many as the thread that starts the renderer has in its pool, if not said.
     pub threads: Option<usize>,
     /// Side of a tile in pixels, at least 1.
     pub tile: u32,
@@ -35,7 +35,7 @@ impl Settings {
     /// Side of a tile: small enough that the last tiles leave no thread idle for long, large enough for a batch.
     pub const DEFAULT_TILE: u32 = 32;
 
-    /// What a scene file asks for, exactly and with all that the machine has.
+    /// What a scene file asks for, exactly and on all threads.
     #[must_use]
     pub fn of_scene(desc: &SceneDesc) -> Settings {
         Settings {
