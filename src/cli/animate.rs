@@ -4,13 +4,13 @@ use super::animate_args::AnimateArgs;
 use super::failure::Failure;
 use super::frame_list::FrameList;
 use super::load::Loaded;
-use super::progress::{Progress, words};
+use super::progress::{Finished, Progress, Watcher, Work, words};
 use super::sequence::Sequence;
 use super::stats::lost;
 use super::video::Video;
-use super::writer::Writer;
+use super::writer::{Account, Writer};
 use super::{diagnostics, interrupt, load, print_result, say};
-use crate::film;
+use crate::film::{self, Film};
 use crate::render::{Control, Renderer, Rendering, Stages};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -19,6 +19,7 @@ use std::time::{Duration, Instant};
 pub(crate) fn run(args: &AnimateArgs) -> Result<(), Failure> {
     let dials = &args.dials;
     let files = Sequence::choose(args.output.as_deref(), &args.scene, &dials.aov)?;
+    let progress = Progress::start(args.progress);
     let loaded = load(args)?;
     let animation = &loaded.desc.animation;
     let scenes = || FrameList::of_range(animation.frames.clone());
@@ -47,6 +48,7 @@ pub(crate) fn run(args: &AnimateArgs) -> Result<(), Failure> {
         video,
         renderer: loaded.renderer(settings)?,
         writer: Writer::default(),
+        progress,
         rendered: 0,
         beside_tracing: Duration::ZERO,
     };
@@ -57,6 +59,12 @@ pub(crate) fn run(args: &AnimateArgs) -> Result<(), Failure> {
     });
     let control = Arc::new(Control::of_frames(todo.len() as u32));
     interrupt::listen(&control);
+    run.progress.begin(Work {
+        control: Arc::clone(&control),
+        limit: None,
+        frames: todo.clone(),
+        pixels: u64::from(size.0) * u64::from(size.1),
+    });
     run.frames(&frames, &todo, &control)
 }
 
@@ -82,6 +90,7 @@ struct Run<'a> {
     video: Video,
     renderer: Renderer,
     writer: Writer,
+    progress: Progress,
     /// Frames that were rendered and written.
     rendered: u32,
     /// What tracing waited for, in all frames together.
@@ -118,11 +127,10 @@ impl Run<'_> {
         control: &Arc<Control>,
     ) -> Result<(), Failure> {
         let launched = Instant::now();
-        let bar = Progress::of_frames(control, None, todo.to_vec());
         let (mut done, mut shown) = (Ok(()), 0);
         for frame in frames.iter() {
             done = if todo.binary_search(&frame).is_ok() {
-                self.frame(frame, control, &bar)
+                self.frame(frame, control)
             } else {
                 self.show_finished(frame)
             };
@@ -132,19 +140,19 @@ impl Run<'_> {
             shown += 1;
         }
         // Whatever ended it, what is on its way to the disk is finished.
-        let last = self.settle(&bar);
+        let last = self.settle();
         let (rendered, all) = (self.rendered, todo.len());
         if let Err(failure) = done.and(last) {
-            bar.say(&format!("{rendered} of {all} frames are finished and stay"));
+            self.progress
+                .say(&format!("{rendered} of {all} frames are finished and stay"));
             return Err(failure);
         }
         if shown < frames.len() {
-            bar.say(&format!(
+            self.progress.say(&format!(
                 "stopped; {rendered} of {all} frames are finished, and the same line goes on with the rest"
             ));
             return Err(Failure::resumable());
         }
-        drop(bar);
         self.finish(frames, launched.elapsed())
     }
 
@@ -159,6 +167,7 @@ impl Run<'_> {
             Some(frame) => self.encoding(frame).metadata,
             None => film::Metadata::default(),
         };
+        drop(self.progress);
         self.video.finish(&metadata)?;
         say(&match rendered {
             0 => "nothing was left to render".to_owned(),
@@ -173,9 +182,14 @@ impl Run<'_> {
     }
 
     /// Renders a frame and sends it on its way to the disk; one that is stopped is dropped.
-    fn frame(&mut self, frame: u32, control: &Control, bar: &Progress) -> Result<(), Failure> {
+    fn frame(&mut self, frame: u32, control: &Control) -> Result<(), Failure> {
         let dials = &self.args.dials;
-        let rendering = self.renderer.render(frame, control);
+        let launched = Instant::now();
+        let (width, height) = self.renderer.settings().size;
+        let mut watcher = Watcher::of(&self.progress, u64::from(width) * u64::from(height));
+        let look = |film: &dyn Fn() -> Film, _, _| watcher.look(film);
+        let rendering = self.renderer.render_watched(frame, control, look);
+        drop(watcher);
         if rendering.stats.stopped {
             return Ok(());
         }
@@ -185,7 +199,7 @@ impl Run<'_> {
             return Err(Failure::lost_samples(lost, LOST_HINT));
         }
         let traced = Instant::now();
-        self.settle(bar)?;
+        self.settle()?;
         if self.video.is_wanted() {
             let gain = self.encoding(frame).gain;
             self.video.show(film::develop(&rendering.film, gain))?;
@@ -193,7 +207,13 @@ impl Run<'_> {
         let files = self.files.clone();
         let (exposure, aovs) = (dials.exposure, dials.aov.clone());
         self.beside_tracing += beside_tracing(&rendering.stats.stages);
-        self.writer.begin(account(frame, &rendering), move || {
+        let account = Account {
+            frame,
+            line: line(frame, &rendering),
+            rel_err: self.progress.error_of(&rendering.film),
+            took: traced - launched,
+        };
+        self.writer.begin(account, move || {
             let encoding = files.encoding(rendering.metadata, exposure, &aovs);
             files.write(frame, &rendering.film, &encoding)
         });
@@ -202,7 +222,7 @@ impl Run<'_> {
     }
 
     /// Waits until the frame on its way is written, and tells of it.
-    fn settle(&mut self, bar: &Progress) -> Result<(), Failure> {
+    fn settle(&mut self) -> Result<(), Failure> {
         let Some(written) = self.writer.wait()? else {
             return Ok(());
         };
@@ -210,7 +230,20 @@ impl Run<'_> {
         if !self.video.takes_stdout() {
             print_result(format!("{}\n", written.path.display()).as_bytes())?;
         }
-        bar.say(&format!("{}, write {}", written.line, words(written.took)));
+        let Account {
+            frame,
+            line,
+            rel_err,
+            took,
+        } = written.account;
+        self.progress
+            .say(&format!("{line}, write {}", words(written.took)));
+        self.progress.finished(&Finished {
+            frame,
+            path: &written.path.display().to_string(),
+            rel_err,
+            took,
+        });
         Ok(())
     }
 
@@ -240,7 +273,7 @@ fn beside_tracing(stages: &Stages) -> Duration {
 }
 
 /// What a frame cost but for its writing, and before that what it lost.
-fn account(frame: u32, rendering: &Rendering) -> String {
+fn line(frame: u32, rendering: &Rendering) -> String {
     let stages = &rendering.stats.stages;
     let lost = match lost(rendering.film.total_non_finite(), &rendering.non_finite) {
         Some(lost) => format!("warning: {lost}\n  = help: {LOST_HINT}\n"),

@@ -3,6 +3,7 @@
 use super::dial_args::DialArgs;
 use super::frame_list::FrameList;
 use super::part_args::ShardArg;
+use super::progress::How;
 use crate::scene::RenderDesc;
 use clap::{Args, value_parser};
 use std::path::PathBuf;
@@ -47,6 +48,9 @@ pub(crate) struct AnimateArgs {
     /// Samples per pixel [default: the scene's]
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..=i64::from(RenderDesc::MAX_SPP)))]
     pub(crate) spp: Option<u32>,
+    /// How progress is told on stderr
+    #[arg(long, value_enum, value_name = "HOW", default_value_t = How::Auto)]
+    pub(crate) progress: How,
     #[command(flatten)]
     pub(crate) dials: DialArgs,
 }

@@ -7,6 +7,7 @@ use super::dial_args::DialArgs;
 use super::goal_args::GoalArgs;
 use super::merge_args::{InfoArgs, MergeArgs};
 use super::part_args::PartArgs;
+use super::progress::How;
 use super::replay_args::ReplayArgs;
 use super::stability_args::StabilityArgs;
 use super::tune_args::TuneArgs;
@@ -134,6 +135,9 @@ pub(crate) struct RenderArgs {
     /// Write what the render cost as JSON
     #[arg(long, value_name = "FILE.json")]
     pub(crate) stats: Option<PathBuf>,
+    /// How progress is told on stderr
+    #[arg(long, value_enum, value_name = "HOW", default_value_t = How::Auto)]
+    pub(crate) progress: How,
     #[command(flatten)]
     pub(crate) goal: GoalArgs,
     #[command(flatten)]

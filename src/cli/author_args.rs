@@ -1,6 +1,7 @@
 //! The arguments of `turntable` and `convert`.
 
 use super::args::{parse_memory, parse_size};
+use super::progress::How;
 use crate::author::Up;
 use crate::scene::RenderDesc;
 use clap::{Args, ValueEnum, value_parser};
@@ -50,6 +51,9 @@ pub(crate) struct TurntableArgs {
     /// Worker threads [default: what Slurm, else affinity and cgroup leave to the process]
     #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
+    /// How progress is told on stderr
+    #[arg(long, value_enum, value_name = "HOW", default_value_t = How::Auto)]
+    pub(crate) progress: How,
 }
 
 /// `luxel convert`.

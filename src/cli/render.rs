@@ -4,7 +4,7 @@ use super::args::RenderArgs;
 use super::failure::Failure;
 use super::output::{Encoding, Output, check_writable};
 use super::part::Part;
-use super::progress::{Progress, words};
+use super::progress::{Finished, Progress, Watcher, Work, words};
 use super::stats::{Account, lost};
 use super::tuned::Tuned;
 use super::versus::Versus;
@@ -33,6 +33,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
     }
     let control = Arc::new(Control::default());
     interrupt::listen(&control);
+    let mut progress = Progress::start(args.progress);
     let (loaded, warnings) = load::scene(&args.scene, args.dials.max_memory)?;
     // If nobody listens on stderr, so be it.
     let _ = diagnostics::print(&warnings);
@@ -58,29 +59,35 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
         tuned.warn_if_stale(renderer.hash());
     }
     let load = start.elapsed();
-    let rendering = {
-        match (&part, &mut versus) {
-            (Some(part), _) => {
-                let canvas = part.canvas(&renderer, args.frame)?;
-                let _bar = Progress::start(&control, time);
-                let traced = part.render(&mut renderer, args.frame, &control, &canvas)?;
-                if !part.is_whole() {
-                    return tell_share(args, part, &canvas, &traced);
+    let (width, height) = renderer.settings().size;
+    let pixels = u64::from(width) * u64::from(height);
+    progress.begin(Work {
+        control: Arc::clone(&control),
+        limit: time,
+        frames: vec![args.frame],
+        pixels,
+    });
+    let rendering = match &part {
+        Some(part) => {
+            let canvas = part.canvas(&renderer, args.frame)?;
+            let traced = part.render(&mut renderer, args.frame, &control, &canvas)?;
+            if !part.is_whole() {
+                progress.end();
+                return tell_share(args, part, &canvas, &traced);
+            }
+            traced.finish(canvas)
+        }
+        None => {
+            let mut watcher = Watcher::of(&progress, pixels);
+            renderer.render_watched(args.frame, &control, |film, spp, time| {
+                watcher.look(film);
+                if let Some(versus) = &mut versus {
+                    versus.look(&film(), spp, time);
                 }
-                traced.finish(canvas)
-            }
-            (None, Some(versus)) => {
-                let _bar = Progress::start(&control, time);
-                renderer.render_watched(args.frame, &control, |film, spp, time| {
-                    versus.look(film, spp, time);
-                })
-            }
-            (None, None) => {
-                let _bar = Progress::start(&control, time);
-                renderer.render(args.frame, &control)
-            }
+            })
         }
     };
+    progress.end();
     let encoding = Encoding::new(
         output.format,
         rendering.metadata.clone(),
@@ -110,6 +117,12 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
         advice: String::new(),
     };
     account.advice = advice::of(&account, args.dials.tree.into());
+    progress.finished(&Finished {
+        frame: args.frame,
+        path: &account.output,
+        rel_err: account.error.as_ref().map(|bar| bar.relative),
+        took: start.elapsed(),
+    });
     tell(args, &output, &account)?;
     match versus {
         None => Ok(()),

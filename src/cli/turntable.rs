@@ -3,7 +3,7 @@
 use super::author_args::TurntableArgs;
 use super::failure::Failure;
 use super::frames::{Frames, Output, Turn};
-use super::progress::{Progress, words};
+use super::progress::{Progress, Work, words};
 use super::{diagnostics, interrupt, say, start, stats};
 use crate::author::{self, Turntable};
 use crate::render::{Control, Renderer, Settings};
@@ -30,21 +30,26 @@ pub(crate) fn run(args: &TurntableArgs) -> Result<(), Failure> {
     }
     let control = Arc::new(Control::of_frames(turn.frames));
     interrupt::listen(&control);
+    let progress = Progress::start(args.progress);
     let mut renderer = renderer(args, &turn)?;
     let mut frames = Frames::new(output, &turn);
     let (mut lost, mut named) = (0, Vec::new());
-    {
-        let _bar = Progress::start(&control, None);
-        for frame in 0..turn.frames {
-            let rendering = renderer.render(frame, &control);
-            if rendering.stats.stopped {
-                break;
-            }
-            frames.add(frame, &rendering)?;
-            lost += rendering.film.total_non_finite();
-            named.extend(rendering.non_finite);
+    progress.begin(Work {
+        control: Arc::clone(&control),
+        limit: None,
+        frames: (0..turn.frames).collect(),
+        pixels: u64::from(args.size.0) * u64::from(args.size.1),
+    });
+    for frame in 0..turn.frames {
+        let rendering = renderer.render(frame, &control);
+        if rendering.stats.stopped {
+            break;
         }
+        frames.add(frame, &rendering)?;
+        lost += rendering.film.total_non_finite();
+        named.extend(rendering.non_finite);
     }
+    drop(progress);
     if let Some(lost) = stats::lost(lost, &named) {
         say(&format!("warning: {lost}\n  = help: {LOST_HINT}"));
     }

@@ -161,19 +161,19 @@ impl Renderer {
         traced.finish(canvas)
     }
 
-    /// The same, while `watch` sees the film after each pass over the whole image, with the samples per pixel and the time
-    /// that tracing has taken so far.
+    /// The same, while `watch` may ask for a copy of the film after each pass over the whole image; it is told the samples
+    /// per pixel and the time that tracing has taken so far.
     pub fn render_watched(
         &mut self,
         frame: u32,
         control: &Control,
-        mut watch: impl FnMut(&Film, u32, Duration) + Send,
+        mut watch: impl FnMut(&dyn Fn() -> Film, u32, Duration) + Send,
     ) -> Rendering {
         let canvas = Canvas::new(&self.settings, &Share::default());
         let mut watching = Duration::ZERO;
         let traced = self.render_by(frame, control, &canvas, |spp, spent| {
             let now = Instant::now();
-            watch(&canvas.film(), spp, spent - watching);
+            watch(&|| canvas.film(), spp, spent - watching);
             watching += now.elapsed();
         });
         traced.finish(canvas)

@@ -3,4 +3,5 @@
 #[path = "../animate/folder.rs"]
 #[allow(dead_code, reason = "animations use more of it")]
 mod folder;
+mod progress;
 mod threads;
