@@ -84,6 +84,7 @@ const RULES: &[Rule] = &[
             // The number of its threads alone.
             "rayon",
             "serde_json",
+            "shlex",
             "strsim",
         ],
     ),
@@ -115,6 +116,7 @@ const CRATES: &[&str] = &[
     "serde",
     "serde_json",
     "sha2",
+    "shlex",
     "strsim",
     "thiserror",
     "tobj",

@@ -4,6 +4,7 @@ use super::animate_args::AnimateArgs;
 use super::author_args::{ConvertArgs, TurntableArgs};
 use super::bench_args::BenchArgs;
 use super::dial_args::DialArgs;
+use super::farm::args::FarmArgs;
 use super::goal_args::GoalArgs;
 use super::merge_args::{InfoArgs, MergeArgs};
 use super::part_args::PartArgs;
@@ -38,6 +39,7 @@ Examples:
   luxel tune room.ron                              which settings are worth their time: draft, preview, final
   luxel merge a.exr.*.part -o a.exr                one image of what many machines rendered
   luxel info a.exr                                 what an image is, and the line that makes it again
+  luxel farm slurm spin.ron --out spin | bash      on many machines
 
 Exit codes: 0 done, 1 images differ by more than --max (bench: the arms' hits do; stability: the scene goes wrong), 2 usage, 65 bad scene, image or part, 66 missing file, 70 bug, 74 i/o, 75 stopped, and the same line goes on, 130 stopped"
 )]
@@ -74,6 +76,8 @@ pub(crate) enum Command {
     Merge(MergeArgs),
     /// Show what an image or a part film is, and the line that makes it again
     Info(InfoArgs),
+    /// Print a render as a job for Slurm, GNU parallel, OpenJD or Kubernetes
+    Farm(FarmArgs),
 }
 
 impl Command {

@@ -21,6 +21,13 @@ pub(crate) struct Loaded {
     assets: AssetStore,
 }
 
+/// Reads a scene alone.
+pub(crate) fn description(path: &Path) -> Result<SceneDesc, Failure> {
+    let memory = Limits::default().memory;
+    let read = scene::load(path).map_err(|e| refuse(path, e, memory))?;
+    Ok(read.desc)
+}
+
 /// Reads a scene and every file that it names, which may take `max_memory` bytes. The warnings come with it, the errors
 /// instead of it.
 pub(crate) fn scene(path: &Path, max_memory: u64) -> Result<(Loaded, Vec<Diagnostic>), Failure> {

@@ -18,6 +18,7 @@ pub mod diagnostics;
 mod dial_args;
 mod explain;
 mod failure;
+mod farm;
 mod frame_list;
 mod frames;
 mod goal_args;
@@ -76,6 +77,7 @@ pub fn run() -> ExitCode {
         Command::Tune(args) => tune::run(args),
         Command::Merge(args) => merge::run(args),
         Command::Info(args) => info::run(args),
+        Command::Farm(args) => farm::run(args),
     };
     match done {
         Ok(()) => ExitCode::from(code::DONE),

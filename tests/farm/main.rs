@@ -1,7 +1,9 @@
-//! luxel among schedulers: how many threads it takes, what it tells logs.
+//! luxel among schedulers: the jobs that it prints, how many threads it takes, what it tells logs.
 
 #[path = "../animate/folder.rs"]
 #[allow(dead_code, reason = "animations use more of it")]
 mod folder;
+#[cfg(unix)]
+mod jobs;
 mod progress;
 mod threads;
