@@ -109,6 +109,10 @@
 //!   saving needs no pause either: it locks one tile after the other while the others are traced.
 //! * `--time` goes on by its own measure: each run adds its time to the part that is there.
 //! * Without `--checkpoint`, Ctrl-C still writes `NAME.partial.png` and exits with 130, which nothing goes on from.
+//! * `farm` prints JSON for OpenJD and Kubernetes, since both take it, and names every task by its number: `--shard auto` would
+//!   take another share where somebody submits a part of an array again. Its tasks ask Slurm for the requeue themselves, so that
+//!   no one must set `RequeueExit`, and not once they are cancelled.
+//! * The error of an image is looked at on the way only where somebody reads a log of it, and never that of a share.
 //! * `--noise` and `--time` without `--spp` do not stop at the scene's samples.
 //! * `world::AuthoringIndex` is a pair, entity and node, since one entity of a scene may stand for a file's many.
 //! * What moved is not asked of hecs's `ChangeTracker`: it compares with clones, as comparing what was extracted with the
