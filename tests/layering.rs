@@ -53,7 +53,7 @@ const RULES: &[Rule] = &[
     (
         "film",
         &["math"],
-        &["crc32fast", "exr", "gif", "png", "thiserror"],
+        &["crc32fast", "exr", "gif", "libc", "png", "thiserror"],
     ),
     (
         "render",

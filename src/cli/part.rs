@@ -8,7 +8,7 @@ use super::{say, share};
 use crate::film::part::{PartError, PartFile, PartWriter, encode_patch};
 use crate::film::{Metadata, write_streamed};
 use crate::render::{Canvas, Control, Renderer, Settings, Share, Traced, Verdict};
-use std::io::{self, BufWriter, ErrorKind, Write};
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
@@ -160,8 +160,7 @@ impl Part {
         if self.timed {
             header.replace("spp", canvas.done().1);
         }
-        write_streamed(&self.path, |file| {
-            let out = BufWriter::new(file);
+        write_streamed(&self.path, |out| {
             let mut part = PartWriter::begin(out, &header, canvas.len() as u32)?;
             let mut bytes = Vec::new();
             for patch in canvas.patches() {
@@ -172,7 +171,7 @@ impl Part {
                 drop(patch);
                 part.patch(&bytes)?;
             }
-            part.finish()?.flush()
+            part.finish().map(drop)
         })
     }
 

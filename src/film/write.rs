@@ -1,5 +1,6 @@
 //! Files appear whole or not at all.
 
+use super::stream::Stream;
 use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, Write};
@@ -20,18 +21,23 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
 /// # Errors
 /// Any of the file system.
 pub fn write_frame(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    write_streamed(path, |file| file.write_all(bytes))
+    write_by(&partial_name(path), path, |file| file.write_all(bytes))
 }
 
-/// The same for a file that is written bit by bit.
+/// The same for a large file that is written bit by bit.
 ///
 /// # Errors
 /// Any of the file system, and of `write`.
 pub fn write_streamed(
     path: &Path,
-    write: impl FnOnce(&mut File) -> io::Result<()>,
+    write: impl FnOnce(&mut Stream) -> io::Result<()>,
 ) -> io::Result<()> {
-    write_by(&partial_name(path), path, write)
+    let temporary = partial_name(path);
+    let written = Stream::create(&temporary).and_then(|mut stream| {
+        write(&mut stream)?;
+        stream.finish()
+    });
+    rename(written, &temporary, path)
 }
 
 /// `NAME.partial` beside `path`.
@@ -47,12 +53,16 @@ fn write_by(
     path: &Path,
     write: impl FnOnce(&mut File) -> io::Result<()>,
 ) -> io::Result<()> {
-    let written = write_all(temporary, write).and_then(|()| fs::rename(temporary, path));
-    if written.is_err() {
+    rename(write_all(temporary, write), temporary, path)
+}
+
+fn rename(written: io::Result<()>, temporary: &Path, path: &Path) -> io::Result<()> {
+    let renamed = written.and_then(|()| fs::rename(temporary, path));
+    if renamed.is_err() {
         // The first error is the one to tell; the temporary may not even exist.
         let _ = fs::remove_file(temporary);
     }
-    written
+    renamed
 }
 
 /// Whether a file could be written at `path`: its folder exists and takes a file, and it is no folder itself. Asked
