@@ -6,7 +6,7 @@ use super::frame_list::FrameList;
 use super::load::Loaded;
 use super::progress::{Finished, Progress, Watcher, Work, words};
 use super::sequence::Sequence;
-use super::stats::lost;
+use super::stats::{lost, samples, spp_of_all};
 use super::video::Video;
 use super::writer::{Account, Writer};
 use super::{diagnostics, interrupt, load, print_result, say};
@@ -37,7 +37,7 @@ pub(crate) fn run(args: &AnimateArgs) -> Result<(), Failure> {
             own
         }
     };
-    let settings = dials.settings(&loaded.desc, args.spp);
+    let settings = dials.settings_to(&loaded.desc, args.spp, args.noise);
     let (gif, y4m) = (args.gif.as_deref(), args.y4m.as_deref());
     let (size, fps) = (settings.size, animation.fps);
     files.prepare()?;
@@ -50,6 +50,7 @@ pub(crate) fn run(args: &AnimateArgs) -> Result<(), Failure> {
         writer: Writer::default(),
         progress,
         rendered: 0,
+        spp: Vec::new(),
         beside_tracing: Duration::ZERO,
     };
     let todo = run.unfinished(&frames)?;
@@ -93,6 +94,8 @@ struct Run<'a> {
     progress: Progress,
     /// Frames that were rendered and written.
     rendered: u32,
+    /// Samples per pixel of each frame that was rendered.
+    spp: Vec<u32>,
     /// What tracing waited for, in all frames together.
     beside_tracing: Duration,
 }
@@ -169,11 +172,15 @@ impl Run<'_> {
         };
         drop(self.progress);
         self.video.finish(&metadata)?;
+        let samples = match self.args.noise {
+            Some(_) => format!(", {}", spp_of_all(&self.spp)),
+            None => String::new(),
+        };
         say(&match rendered {
             0 => "nothing was left to render".to_owned(),
             1 => format!("1 frame in {}", words(took)),
             _ => format!(
-                "{rendered} frames in {}; beside tracing, {} a frame",
+                "{rendered} frames in {}{samples}; beside tracing, {} a frame",
                 words(took),
                 words(beside)
             ),
@@ -207,9 +214,10 @@ impl Run<'_> {
         let files = self.files.clone();
         let (exposure, aovs) = (dials.exposure, dials.aov.clone());
         self.beside_tracing += beside_tracing(&rendering.stats.stages);
+        self.spp.push(rendering.stats.spp);
         let account = Account {
             frame,
-            line: line(frame, &rendering),
+            line: line(frame, &rendering, self.args.noise),
             rel_err: self.progress.error_of(&rendering.film),
             took: traced - launched,
         };
@@ -272,19 +280,23 @@ fn beside_tracing(stages: &Stages) -> Duration {
     stages.pose + stages.extract + stages.flatten + stages.bvh
 }
 
-/// What a frame cost but for its writing, and before that what it lost.
-fn line(frame: u32, rendering: &Rendering) -> String {
+/// What a frame cost but for its writing, and before that what it lost. `goal` is how wrong it was to be.
+fn line(frame: u32, rendering: &Rendering, goal: Option<f64>) -> String {
     let stages = &rendering.stats.stages;
+    let samples = match goal {
+        Some(_) => samples(&rendering.stats, goal) + ", ",
+        None => String::new(),
+    };
     let lost = match lost(rendering.film.total_non_finite(), &rendering.non_finite) {
         Some(lost) => format!("warning: {lost}\n  = help: {LOST_HINT}\n"),
         None => String::new(),
     };
     format!(
-        "{lost}frame {frame}: pose {}, extract {}, flatten {}, tree {}, trace {}",
+        "{lost}frame {frame}: {samples}pose {}, extract {}, flatten {}, tree {}, trace {}",
         words(stages.pose),
         words(stages.extract),
         words(stages.flatten),
         words(stages.bvh),
-        words(stages.trace),
+        words(stages.pilot + stages.trace),
     )
 }

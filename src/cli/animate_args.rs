@@ -2,6 +2,7 @@
 
 use super::dial_args::DialArgs;
 use super::frame_list::FrameList;
+use super::goal_args::parse_noise;
 use super::part_args::ShardArg;
 use super::progress::How;
 use crate::scene::RenderDesc;
@@ -14,6 +15,7 @@ use std::path::PathBuf;
 Examples:
   luxel animate spin.ron                           spin_0000.png and so on, the frames that the scene names
   luxel animate spin.ron --frames 0..48:4 --spp 4  every fourth, quickly
+  luxel animate spin.ron --noise 5%                every frame to the same error, not with the same samples
   luxel animate spin.ron -o out/f_####.exr --gif spin.gif
   luxel animate spin.ron --shard 0/4               every fourth frame, and another machine those of 1/4
   luxel animate spin.ron --y4m - | ffmpeg -i - -pix_fmt yuv420p -colorspace bt709 spin.mp4
@@ -45,9 +47,12 @@ pub(crate) struct AnimateArgs {
     /// Render all frames anew, whatever is there
     #[arg(long)]
     pub(crate) overwrite: bool,
-    /// Samples per pixel [default: the scene's]
+    /// Samples per pixel, or with --noise at most so many [default: the scene's]
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..=i64::from(RenderDesc::MAX_SPP)))]
     pub(crate) spp: Option<u32>,
+    /// As many samples in each frame as bring it to this relative error: 1% or 0.01. A pilot finds how many
+    #[arg(long, value_name = "ERROR", value_parser = parse_noise)]
+    pub(crate) noise: Option<f64>,
     /// How progress is told on stderr
     #[arg(long, value_enum, value_name = "HOW", default_value_t = How::Auto)]
     pub(crate) progress: How,

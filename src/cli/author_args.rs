@@ -1,6 +1,7 @@
 //! The arguments of `turntable` and `convert`.
 
 use super::args::{parse_memory, parse_size};
+use super::goal_args::parse_noise;
 use super::progress::How;
 use crate::author::Up;
 use crate::scene::RenderDesc;
@@ -39,6 +40,9 @@ pub(crate) struct TurntableArgs {
     /// Samples per pixel
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = value_parser!(u32).range(1..=i64::from(RenderDesc::MAX_SPP)))]
     pub(crate) spp: u32,
+    /// As many samples in each frame as bring it to this relative error, 1% or 0.01, in place of --spp
+    #[arg(long, value_name = "ERROR", value_parser = parse_noise, conflicts_with = "spp")]
+    pub(crate) noise: Option<f64>,
     /// Which axis of the mesh points up
     #[arg(long, value_enum, value_name = "AXIS", default_value_t = UpArg::Y, allow_hyphen_values = true)]
     pub(crate) up: UpArg,

@@ -97,6 +97,20 @@ impl DialArgs {
         }
     }
 
+    /// The same for renders that may end at an error: without a number of samples, at as many as that takes.
+    pub(crate) fn settings_to(
+        &self,
+        desc: &SceneDesc,
+        spp: Option<u32>,
+        noise: Option<f64>,
+    ) -> Settings {
+        let endless = noise.is_some().then_some(RenderDesc::MAX_SPP);
+        Settings {
+            noise,
+            ..self.settings(desc, spp.or(endless))
+        }
+    }
+
     /// The kernels' instruction set.
     pub(crate) fn isa(&self) -> Isa {
         self.isa.unwrap_or_else(Isa::best)

@@ -210,12 +210,14 @@ impl Frames {
     }
 }
 
-/// The metadata of a frame, with the number of frames in the place of its own number.
+/// The metadata of a frame, with the number of frames in the place of its own number, and without what is its own.
 pub(super) fn of_all_frames(one: &Metadata, frames: u32) -> Metadata {
     let mut all = Metadata::default();
+    let by_error = one.entries().any(|(key, _)| key == "error");
     for (key, value) in one.entries() {
         match key {
             "frame" => all.push("frames", frames),
+            "spp" if by_error => {}
             _ => all.push(key, value),
         }
     }

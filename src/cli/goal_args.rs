@@ -16,7 +16,7 @@ pub(crate) struct GoalArgs {
 }
 
 /// `1%` or `0.01`.
-fn parse_noise(text: &str) -> Result<f64, String> {
+pub(super) fn parse_noise(text: &str) -> Result<f64, String> {
     let value = match text.trim().strip_suffix('%') {
         Some(percent) => percent.trim().parse::<f64>().map(|p| p / 100.0),
         None => text.trim().parse::<f64>(),

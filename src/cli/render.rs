@@ -205,13 +205,12 @@ fn write_partial(output: &Output, rendering: &Rendering, encoding: &Encoding<'_>
 
 /// The scene's settings, overridden by the arguments.
 fn settings(args: &RenderArgs, desc: &SceneDesc) -> Settings {
-    let (noise, time) = (args.goal.noise, args.time);
     // With another end, as many samples as that takes.
-    let endless = (noise.is_some() || time.is_some()).then_some(RenderDesc::MAX_SPP);
+    let endless = args.time.map(|_| RenderDesc::MAX_SPP);
+    let noise = args.goal.noise;
     Settings {
-        noise,
-        time,
-        ..args.dials.settings(desc, args.spp.or(endless))
+        time: args.time,
+        ..args.dials.settings_to(desc, args.spp.or(endless), noise)
     }
 }
 

@@ -113,7 +113,12 @@ impl Sequence {
 
 /// What a file was made of that is not what is asked for now; `None` if all of it is.
 fn difference(stored: &Stored, format: Format, encoding: &Encoding<'_>) -> Option<String> {
-    let made = difference_of(&stored.metadata, &encoding.metadata, &[]);
+    // How many samples a wanted error takes, only rendering tells: all else being equal, so many.
+    let free: &[&str] = match encoding.metadata.value("error") {
+        Some(_) => &["spp"],
+        None => &[],
+    };
+    let made = difference_of(&stored.metadata, &encoding.metadata, free);
     if made.is_some() {
         return made;
     }

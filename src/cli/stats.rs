@@ -71,6 +71,33 @@ pub(crate) fn error_words(bar: Option<&ErrorBar>) -> String {
     }
 }
 
+/// `64 spp`, and what ended a render where that was not their number; `goal` is how wrong it was to be.
+pub(crate) fn samples(stats: &Stats, goal: Option<f64>) -> String {
+    let spp = stats.spp;
+    match (stats.ended, goal) {
+        (Ended::Time, _) => format!("{spp} spp, ended by --time"),
+        (Ended::Noise, Some(goal)) => format!(
+            "{spp} spp, ended by --noise {} % (pilot: {} spp)",
+            percent(goal, goal),
+            stats.pilot
+        ),
+        (_, Some(_)) => format!("{spp} spp, ended by --spp"),
+        _ => format!("{spp} spp"),
+    }
+}
+
+/// Samples per pixel of several frames: `64 spp`, or `24 to 190 spp, 77 on average`.
+pub(crate) fn spp_of_all(frames: &[u32]) -> String {
+    let least = frames.iter().min().copied().unwrap_or_default();
+    let most = frames.iter().max().copied().unwrap_or_default();
+    if least == most {
+        return format!("{most} spp");
+    }
+    let sum: f64 = frames.iter().copied().map(f64::from).sum();
+    let mean = sum / frames.len() as f64;
+    format!("{least} to {most} spp, {mean:.0} on average")
+}
+
 impl Account<'_> {
     /// One line: `room.png · 512×512 · 64 spp · 3.1 s · relative RMSE 1.8 % ± 0.2 · 12.3 Mrays/s · extract 100 µs, flatten
     /// 2 ms, tree 8 ms · 12 MB`, the last being what the files and the buffers take.
@@ -81,7 +108,7 @@ impl Account<'_> {
             self.output,
             self.film.width(),
             self.film.height(),
-            self.samples(),
+            samples(&self.stats, self.goal),
             words(stages.pilot + stages.trace),
             error_words(self.error.as_ref()),
             self.stats.mrays_per_second(),
@@ -90,21 +117,6 @@ impl Account<'_> {
             words(stages.bvh),
             megabytes(self.files + self.stats.bytes as u64),
         )
-    }
-
-    /// `64 spp`, and what ended it where that was not their number.
-    fn samples(&self) -> String {
-        let spp = self.stats.spp;
-        match (self.stats.ended, self.goal) {
-            (Ended::Time, _) => format!("{spp} spp, ended by --time"),
-            (Ended::Noise, Some(goal)) => format!(
-                "{spp} spp, ended by --noise {} % (pilot: {} spp)",
-                percent(goal, goal),
-                self.stats.pilot
-            ),
-            (_, Some(_)) => format!("{spp} spp, ended by --spp"),
-            _ => format!("{spp} spp"),
-        }
     }
 
     /// Why the error bar is not to be trusted, if so.
@@ -128,6 +140,7 @@ impl Account<'_> {
         let share = |time: Duration| ratio(time.as_secs_f64(), all);
         json!({
             "load": share(self.load),
+            "pose": share(stages.pose),
             "extract": share(stages.extract),
             "flatten": share(stages.flatten),
             "bvh": share(stages.bvh),

@@ -7,7 +7,7 @@ use super::progress::{Progress, Work, words};
 use super::{diagnostics, interrupt, say, start, stats};
 use crate::author::{self, Turntable};
 use crate::render::{Control, Renderer, Settings};
-use crate::scene;
+use crate::scene::{self, RenderDesc};
 use crate::world;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -33,7 +33,7 @@ pub(crate) fn run(args: &TurntableArgs) -> Result<(), Failure> {
     let progress = Progress::start(args.progress);
     let mut renderer = renderer(args, &turn)?;
     let mut frames = Frames::new(output, &turn);
-    let (mut lost, mut named) = (0, Vec::new());
+    let (mut lost, mut named, mut spp) = (0, Vec::new(), Vec::new());
     progress.begin(Work {
         control: Arc::clone(&control),
         limit: None,
@@ -46,6 +46,7 @@ pub(crate) fn run(args: &TurntableArgs) -> Result<(), Failure> {
             break;
         }
         frames.add(frame, &rendering)?;
+        spp.push(rendering.stats.spp);
         lost += rendering.film.total_non_finite();
         named.extend(rendering.non_finite);
     }
@@ -65,9 +66,9 @@ pub(crate) fn run(args: &TurntableArgs) -> Result<(), Failure> {
     let (width, height) = args.size;
     let path = finished.path.unwrap_or_default();
     say(&format!(
-        "{path} · {width}×{height} · {} frames · {} spp · {}",
+        "{path} · {width}×{height} · {} frames · {} · {}",
         turn.frames,
-        args.spp,
+        stats::spp_of_all(&spp),
         words(launched.elapsed())
     ));
     Ok(())
@@ -104,9 +105,13 @@ fn renderer(args: &TurntableArgs, turn: &Turn) -> Result<Renderer, Failure> {
     let spawned = world::spawn(&desc, mesh.loader).map_err(Failure::scene)?;
     // If nobody listens on stderr, so be it.
     let _ = diagnostics::print(&spawned.warnings);
+    let own = Settings::of_scene(&desc);
     let settings = Settings {
+        noise: args.noise,
+        // In its place, as many as the error takes.
+        spp: args.noise.map_or(own.spp, |_| RenderDesc::MAX_SPP),
         threads: args.threads.map(usize::from),
-        ..Settings::of_scene(&desc)
+        ..own
     };
     Renderer::new(&desc, spawned.world, &spawned.assets, settings).map_err(|e| Failure::threads(&e))
 }

@@ -2,7 +2,7 @@
 
 use super::canvas::lock;
 use super::lost::{self, NonFinite};
-use super::metadata::{self, scene_hash};
+use super::metadata::{self, Samples, scene_hash};
 use super::passes::{Deadline, Passes};
 use super::pilot::{self, Verdict};
 use super::{Canvas, Control, Ended, Settings, Share, Stages, Stats, tiles};
@@ -124,15 +124,18 @@ impl Renderer {
         self.world
     }
 
-    /// What the image of a frame says about how it was made, if every pixel has all samples. What only one file format
-    /// has, as a PNG its exposure, is the caller's to add.
+    /// What the image of a frame says about how it was made, if every pixel has all samples; of a wanted error, without
+    /// their number, which only rendering tells. What only one file format has, as a PNG its exposure, is the caller's to
+    /// add.
     #[must_use]
     pub fn metadata(&self, frame: u32) -> Metadata {
-        self.metadata_of(frame, self.settings.spp)
+        let settings = &self.settings;
+        let spp = settings.noise.is_none().then_some(settings.spp);
+        self.metadata_of(frame, Samples { spp, cut: false })
     }
 
-    fn metadata_of(&self, frame: u32, spp: u32) -> Metadata {
-        metadata::metadata(&self.hash, frame, self.filter, &self.settings, spp)
+    fn metadata_of(&self, frame: u32, samples: Samples) -> Metadata {
+        metadata::metadata(&self.hash, frame, self.filter, &self.settings, samples)
     }
 
     /// Poses the world at `frame / fps` seconds and builds what tracing reads.
@@ -193,6 +196,7 @@ impl Renderer {
         watch: impl FnMut(u32, Duration) + Send,
     ) -> Traced {
         let deadline = self.settings.time.map(Deadline::after);
+        control.begin();
         let (scene, times) = self.build(frame);
         let mut stats = self.trace(&scene, &self.settings, canvas, (control, deadline), watch);
         let non_finite = lost::find(canvas, &scene, frame, &self.settings.trace);
@@ -206,7 +210,13 @@ impl Renderer {
             ..stats.stages
         };
         Traced {
-            metadata: self.metadata_of(frame, stats.spp),
+            metadata: self.metadata_of(
+                frame,
+                Samples {
+                    spp: Some(stats.spp),
+                    cut: stats.ended == Ended::Time,
+                },
+            ),
             stats,
             non_finite,
         }

@@ -4,7 +4,7 @@ use super::Settings;
 use crate::asset::AssetStore;
 use crate::film::Metadata;
 use crate::flat::PixelFilter;
-use crate::scene::SceneDesc;
+use crate::scene::{RenderDesc, SceneDesc};
 use crate::trace::{Fresnel, Sampler};
 use sha2::{Digest, Sha256};
 
@@ -18,14 +18,22 @@ pub(super) fn scene_hash(desc: &SceneDesc, store: &AssetStore) -> String {
     hash.finalize().iter().map(|b| format!("{b:02x}")).collect()
 }
 
-/// The metadata of a frame with `spp` samples in every pixel. What only one file format has, as a PNG its exposure, is
-/// the caller's to add.
+/// The samples of a frame.
+#[derive(Clone, Copy)]
+pub(super) struct Samples {
+    /// In every pixel, if that is known.
+    pub(super) spp: Option<u32>,
+    /// Whether a deadline cut them off: then no setting tells their number.
+    pub(super) cut: bool,
+}
+
+/// The metadata of a frame. What only one file format has, as a PNG its exposure, is the caller's to add.
 pub(super) fn metadata(
     hash: &str,
     frame: u32,
     filter: PixelFilter,
     settings: &Settings,
-    spp: u32,
+    samples: Samples,
 ) -> Metadata {
     let (width, height) = settings.size;
     let dials = &settings.trace;
@@ -35,7 +43,12 @@ pub(super) fn metadata(
     metadata.push("scene", hash);
     metadata.push("frame", frame);
     metadata.push("size", format!("{width}x{height}"));
-    metadata.push("spp", spp);
+    if let Some(spp) = samples.spp {
+        metadata.push("spp", spp);
+    }
+    if let Some(error) = settings.noise.filter(|_| !samples.cut) {
+        metadata.push("error", wanted(error, settings.spp));
+    }
     metadata.push("seed", dials.seed);
     metadata.push("bounces", dials.max_bounces);
     metadata.push("filter", filter_name(filter));
@@ -57,6 +70,14 @@ pub(super) fn metadata(
         metadata.push("noise", "fixed");
     }
     metadata
+}
+
+/// The error that was asked for, and where the samples had to end.
+fn wanted(error: f64, most: u32) -> String {
+    match most {
+        RenderDesc::MAX_SPP => error.to_string(),
+        most => format!("{error} or {most} spp"),
+    }
 }
 
 fn filter_name(filter: PixelFilter) -> String {

@@ -23,7 +23,7 @@ impl Stages {
     /// All of them together.
     #[must_use]
     pub fn total(&self) -> Duration {
-        self.extract + self.flatten + self.bvh + self.pilot + self.trace
+        self.pose + self.extract + self.flatten + self.bvh + self.pilot + self.trace
     }
 }
 

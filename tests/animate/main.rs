@@ -5,6 +5,7 @@ mod command;
 mod folder;
 mod gltf;
 mod interrupted;
+mod level;
 mod motion;
 mod noise;
 mod standing;

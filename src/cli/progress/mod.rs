@@ -195,7 +195,7 @@ fn watch(told: &Mutex<Told>, end: &Receiver<()>, every: Duration, mut tell: impl
         // The build is over when tracing counts: its time says nothing about the samples to come.
         let since = *tracing_since.get_or_insert_with(Instant::now);
         let times = (launched.elapsed(), since.elapsed());
-        Standing::of(work, counted, times, told.rel_err)
+        Standing::of(work, counted, work.control.place(), times, told.rel_err)
     };
     while end.recv_timeout(REFRESH) == Err(RecvTimeoutError::Timeout) {
         let standing = now();

@@ -1,5 +1,7 @@
 //! How things stand, and the lines that say so.
 
+#[cfg(doc)]
+use crate::render::Control;
 use super::{Finished, How, Work};
 use serde_json::{Value, json};
 use std::time::Duration;
@@ -34,10 +36,12 @@ pub(super) struct Tracing {
 }
 
 impl Standing {
-    /// So many samples of so many are traced, `spent` since the start, of which it took `tracing`.
+    /// So many samples of so many are traced, of the frame at hand as [`Control::place`] says, `spent` since the start, of
+    /// which it took `tracing`.
     pub(super) fn of(
         work: &Work,
         (samples, total): (u64, u64),
+        (at, traced, expected): (u32, u64, u64),
         (spent, tracing): (Duration, Duration),
         rel_err: Option<f64>,
     ) -> Standing {
@@ -47,15 +51,12 @@ impl Standing {
             .limit
             .map_or(0.0, |limit| spent.as_secs_f64() / limit.as_secs_f64());
         let share = samples as f64 / total as f64;
-        let frames = work.frames.len();
-        // After the last sample of the last frame, it is still that one.
-        let at = ((share * frames as f64) as usize).min(frames.saturating_sub(1));
-        let of = total as f64 / (work.pixels * frames as u64) as f64;
+        let per_pixel = |samples: u64| samples as f64 / work.pixels as f64;
         Standing::Tracing(Tracing {
-            frame: work.frames.get(at).copied().unwrap_or_default(),
-            frames,
-            spp: (share * frames as f64 - at as f64) * of,
-            of,
+            frame: work.frames.get(at as usize).copied().unwrap_or_default(),
+            frames: work.frames.len(),
+            spp: per_pixel(traced),
+            of: per_pixel(expected),
             done: share.max(clock.min(1.0)),
             rel_err,
             left: by_samples.into_iter().chain(by_clock).min(),
@@ -178,6 +179,9 @@ mod tests {
 
     /// Of frames of ten pixels, after ten seconds of tracing in twelve.
     fn standing(frames: &[u32], counted: (u64, u64), limit: Option<u64>) -> Standing {
+        let expected = counted.1 / frames.len() as u64;
+        let at = (counted.0 / expected).min(frames.len() as u64 - 1);
+        let place = (at as u32, counted.0 - at * expected, expected);
         let work = Work {
             control: Arc::new(Control::default()),
             limit: limit.map(Duration::from_secs),
@@ -185,7 +189,7 @@ mod tests {
             pixels: 10,
         };
         let times = (Duration::from_secs(12), Duration::from_secs(10));
-        Standing::of(&work, counted, times, Some(0.021_001))
+        Standing::of(&work, counted, place, times, Some(0.021_001))
     }
 
     #[test]
