@@ -1,5 +1,5 @@
-//! What it costs to come from one frame to the next, without tracing: a mesh that turns, of 10,000 to 4,000,000 triangles;
-//! one that stands while a small one turns; and 10,000 instances of one, all turning.
+//! What it costs to come from one frame to the next, without tracing: 10,000 instances of one mesh, all turning; a mesh that
+//! turns, of 10,000 to 4,000,000 triangles; and one that stands while a small one turns.
 //!
 //! `cargo bench --bench update`, or `-- 1` for the meshes of up to so many million triangles. Meshes are written to a
 //! temporary folder and read from there. Medians of 48 frames, in microseconds; the first frame, which builds the trees,
@@ -10,11 +10,14 @@ use luxel::build::{BuildTimes, buffer_bytes};
 use luxel::math::{DVec3, sin_cos_deg};
 use luxel::render::{Renderer, Settings};
 use luxel::scene::{self, SceneDesc};
-use luxel::world::{self, AuthoringIndex, Shape, Spawned, Spin, Transform};
+use luxel::world::{self, AuthoringIndex, Pose, Shape, Spawned, Spin, Transform};
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
+
+#[path = "../tests/mutate/memory.rs"]
+mod memory;
 
 const FRAMES: u32 = 48;
 
@@ -37,6 +40,7 @@ fn main() {
         "{:22} {:>9} {:>8} {:>7} {:>8} {:>8} {:>7} {:>8}",
         "scene", "triangles", "first", "pose", "extract", "flatten", "tree", "all"
     );
+    crowd(&folder);
     for steps in BALLS
         .into_iter()
         .filter(|&n| f64::from(triangles(n)) <= most)
@@ -59,26 +63,40 @@ fn main() {
             &mut renderer(&folder, &standing),
         );
     }
-    crowd(&folder);
     fs::remove_dir_all(&folder).expect("ours");
 }
 
-/// Instances without number, all turning, and what each costs. They are spawned as the world would spawn them, without a
-/// text that the process would have to hold as well.
+/// Instances without number, all turning, and what each costs.
 fn crowd(folder: &Path) {
     fs::write(folder.join("ball.obj"), ball(MEMBER)).expect("writable");
+    let (one, alone) = memory::peak(|| instances(folder, 1));
+    let before = resident();
+    let (all, peak) = memory::peak(|| instances(folder, CROWD));
+    let after = resident();
+    let each = |of_all: usize, of_one: usize| of_all.saturating_sub(of_one) / CROWD as usize;
+    println!("\n{CROWD} instances, each:");
+    println!("{:6} bytes in the flat scene", each(all, one));
+    println!(
+        "{:6} bytes of the heap, world and build included, at its peak",
+        each(peak, alone)
+    );
+    if let (Some(before), Some(after)) = (before, after) {
+        let each = each(after, before);
+        println!(
+            "{each:6} bytes of the process, with what the system's allocator keeps for every thread\n"
+        );
+    }
+}
+
+/// Renders so many instances, and says how large their flat scene is. They are spawned as the world would spawn them,
+/// without a text that the process would have to hold as well.
+fn instances(folder: &Path, count: u32) -> usize {
     let turning = "(shape: Mesh(\"ball.obj\"), spin: (axis: (1, 2, 3), deg_per_s: 90)),";
-    let alone = bytes(&mut renderer(folder, turning));
     let (desc, mut spawned) = spawn(folder, turning);
     let mesh = |shape: &Shape| matches!(shape, Shape::Mesh { .. }).then_some(*shape);
-    let shape = spawned
-        .world
-        .query::<&Shape>()
-        .iter()
-        .find_map(mesh)
-        .expect("one");
-    let before = memory();
-    for i in 1..CROWD {
+    let shape = spawned.world.query::<&Shape>().iter().find_map(mesh);
+    let shape = shape.expect("one");
+    for i in 1..count {
         let (x, z) = (f64::from(3 * (i % 100)), f64::from(3 * (i / 100)));
         let transform = Transform {
             translate: DVec3::new(x, 0.0, z),
@@ -93,19 +111,18 @@ fn crowd(folder: &Path) {
             entity: i + 1,
             node: 0,
         };
-        spawned.world.spawn((index, shape, transform, spin));
+        let rest = Pose::default();
+        spawned.world.spawn((index, rest, shape, transform, spin));
     }
     let settings = Settings::of_scene(&desc);
-    let all = Renderer::new(&desc, spawned.world, &spawned.assets, settings);
-    let mut all = all.expect("threads");
-    row("instances, all turning", triangles(MEMBER), &mut all);
-    let after = memory();
-    let each = (bytes(&mut all) - alone) / CROWD as usize;
-    println!("\n{CROWD} instances: {each} bytes each in the flat scene");
-    if let (Some(before), Some(after)) = (before, after) {
-        let each = after.saturating_sub(before) / u64::from(CROWD);
-        println!("and {each} bytes each of the process");
-    }
+    let renderer = Renderer::new(&desc, spawned.world, &spawned.assets, settings);
+    let mut renderer = renderer.expect("threads");
+    row(
+        &format!("{count} turning"),
+        triangles(MEMBER),
+        &mut renderer,
+    );
+    bytes(&mut renderer)
 }
 
 fn bytes(renderer: &mut Renderer) -> usize {
@@ -190,9 +207,9 @@ fn ball(steps: u32) -> String {
 }
 
 /// Resident bytes of this process, where the system tells.
-fn memory() -> Option<u64> {
+fn resident() -> Option<usize> {
     let status = fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmRSS:"))?;
-    let kilobytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    let kilobytes: usize = line.split_whitespace().nth(1)?.parse().ok()?;
     Some(1024 * kilobytes)
 }

@@ -1,58 +1,66 @@
-//! Extract: what the build needs of the world, copied out in authoring order, since hecs has none.
+//! Extract: what the build needs of the world, listed in authoring order, since hecs has none. Nothing is copied that is
+//! larger than a reference.
 
 use super::meshes::MeshKey;
 use crate::asset::{Light, MeshId};
 use crate::flat::ObjectId;
 use crate::world::{
-    AuthoringIndex, Camera, Emissive, Keys, Material, Normals, Parent, Pose, Shape, Sky, Spin,
+    AuthoringIndex, Camera, Emissive, Keys, Material, Normals, Parent, Pose, Poses, Shape, Sky,
+    Spin,
 };
-use hecs::{Entity, World};
-use std::collections::{HashMap, HashSet};
+use hecs::{Entity, QueryBorrow, Satisfies, World};
 
 /// The world at one time, sorted by [`AuthoringIndex`].
 #[derive(Debug)]
-pub(crate) struct Extracted {
+pub(crate) struct Extracted<'a> {
     pub(crate) camera: (Pose, Camera),
-    pub(crate) spheres: Vec<SphereItem>,
-    pub(crate) meshes: Vec<MeshItem>,
-    pub(crate) lights: Vec<LightItem>,
+    pub(crate) spheres: Vec<SphereItem<'a>>,
+    pub(crate) meshes: Vec<MeshItem<'a>>,
+    pub(crate) lights: Vec<LightItem<'a>>,
     pub(crate) sky: Option<Sky>,
 }
 
 /// A light without extent, where it is.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct LightItem {
-    pub(crate) pose: Pose,
-    pub(crate) light: Light,
+pub(crate) struct LightItem<'a> {
+    index: AuthoringIndex,
+    pub(crate) pose: &'a Pose,
+    pub(crate) light: &'a Light,
 }
 
 /// What every shape has.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Look {
-    pub(crate) object: ObjectId,
-    pub(crate) pose: Pose,
+pub(crate) struct Look<'a> {
+    pub(crate) index: AuthoringIndex,
+    pub(crate) pose: &'a Pose,
     /// Overrides what a mesh file says.
-    pub(crate) material: Option<Material>,
-    pub(crate) emission: Option<[f64; 3]>,
+    pub(crate) material: Option<&'a Material>,
+    pub(crate) emission: Option<&'a Emissive>,
     /// Whether the entity or an ancestor ever moves: known from the scene, not from the frame.
     pub(crate) moves: bool,
 }
 
+impl Look<'_> {
+    pub(crate) fn object(&self) -> ObjectId {
+        ObjectId(self.index.entity)
+    }
+}
+
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct SphereItem {
-    pub(crate) look: Look,
+pub(crate) struct SphereItem<'a> {
+    pub(crate) look: Look<'a>,
     pub(crate) radius: f64,
     pub(crate) inverted: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct MeshItem {
-    pub(crate) look: Look,
+pub(crate) struct MeshItem<'a> {
+    pub(crate) look: Look<'a>,
     pub(crate) mesh: MeshId,
     pub(crate) normals: Normals,
 }
 
-impl MeshItem {
+impl MeshItem<'_> {
     pub(crate) fn key(&self) -> MeshKey {
         MeshKey::new(self.mesh, self.normals)
     }
@@ -65,34 +73,45 @@ const NO_CAMERA: Camera = Camera {
     focus_distance: 1.0,
 };
 
-/// Reads the world; `pose_of` says where an entity is.
-pub(crate) fn extract(world: &World, pose_of: impl Fn(Entity) -> Pose) -> Extracted {
-    let mut query = world.query::<(
-        Entity,
-        &AuthoringIndex,
-        Option<&Shape>,
-        Option<&Material>,
-        Option<&Emissive>,
-        Option<&Camera>,
-        Option<&Light>,
-    )>();
-    let mut rows: Vec<_> = query.iter().collect();
-    rows.sort_by_key(|row| row.1);
+/// What is read of an entity.
+pub(crate) type Row<'a> = (
+    Entity,
+    &'a AuthoringIndex,
+    Option<&'a Pose>,
+    Option<&'a Shape>,
+    Option<&'a Material>,
+    Option<&'a Emissive>,
+    Option<&'a Camera>,
+    Option<&'a Light>,
+);
+
+/// Lists the rows of a world, at `poses` or, without them, where it is posed.
+pub(crate) fn extract<'a>(
+    world: &World,
+    rows: &'a mut QueryBorrow<'_, Row<'static>>,
+    poses: Option<&'a Poses>,
+) -> Extracted<'a> {
     let moving = moving(world);
+    let of_meshes = |row: &Row| matches!(row.3, Some(Shape::Mesh { .. }));
+    let meshes = rows.iter().filter(of_meshes).count();
     let mut extracted = Extracted {
-        camera: (Pose::default(), NO_CAMERA),
+        camera: (Pose::IDENTITY, NO_CAMERA),
         spheres: Vec::new(),
-        meshes: Vec::new(),
+        meshes: Vec::with_capacity(meshes),
         lights: Vec::new(),
         sky: world.query::<&Sky>().iter().next().copied(),
     };
-    for (entity, index, shape, material, emissive, camera, light) in rows {
+    for (entity, index, posed, shape, material, emissive, camera, light) in rows.iter() {
+        let pose = match poses {
+            Some(poses) => poses.of(entity),
+            None => posed.unwrap_or(&Pose::IDENTITY),
+        };
         let look = Look {
-            object: ObjectId(index.entity),
-            pose: pose_of(entity),
-            material: material.copied(),
-            emission: emissive.map(|e| e.0),
-            moves: moving.contains(&entity),
+            index: *index,
+            pose,
+            material,
+            emission: emissive,
+            moves: moving[entity.id() as usize],
         };
         match shape.copied() {
             Some(Shape::Sphere { radius, inverted }) => extracted.spheres.push(SphereItem {
@@ -108,31 +127,44 @@ pub(crate) fn extract(world: &World, pose_of: impl Fn(Entity) -> Pose) -> Extrac
             None => {}
         }
         if let Some(camera) = camera {
-            extracted.camera = (look.pose, *camera);
+            extracted.camera = (*pose, *camera);
         }
         extracted.lights.extend(light.map(|light| LightItem {
-            pose: look.pose,
-            light: *light,
+            index: *index,
+            pose,
+            light,
         }));
     }
+    extracted.spheres.sort_by_key(|item| item.look.index);
+    extracted.meshes.sort_by_key(|item| item.look.index);
+    extracted.lights.sort_by_key(|item| item.index);
     extracted
 }
 
-/// Every entity that turns or has keys, or whose ancestor does.
-fn moving(world: &World) -> HashSet<Entity> {
-    let mut children: HashMap<Entity, Vec<Entity>> = HashMap::new();
-    for (entity, parent) in world.query::<(Entity, &Parent)>().iter() {
-        children.entry(parent.0).or_default().push(entity);
+/// Of every entity, by its number, whether it turns or has keys, or an ancestor does.
+fn moving(world: &World) -> Vec<bool> {
+    let mut moving = Vec::with_capacity(world.len() as usize);
+    let mut children = Vec::new();
+    type Moves<'a> = Satisfies<hecs::Or<&'a Spin, &'a Keys>>;
+    for (entity, moves, parent) in world.query::<(Entity, Moves, Option<&Parent>)>().iter() {
+        let own = entity.id() as usize;
+        if own >= moving.len() {
+            moving.resize(own + 1, false);
+        }
+        moving[own] = moves;
+        children.extend(parent.map(|parent| (own, parent.0.id() as usize)));
     }
-    let mut next: Vec<Entity> = world
-        .query::<(Entity, hecs::Or<&Spin, &Keys>)>()
-        .iter()
-        .map(|(entity, _)| entity)
-        .collect();
-    let mut moving = HashSet::new();
-    while let Some(entity) = next.pop() {
-        if moving.insert(entity) {
-            next.extend(children.get(&entity).into_iter().flatten());
+    children.sort_unstable_by_key(|&(_, parent)| parent);
+    let mut next: Vec<usize> = (0..moving.len()).filter(|i| moving[*i]).collect();
+    while let Some(parent) = next.pop() {
+        let first = children.partition_point(|&(_, of)| of < parent);
+        let own = children[first..]
+            .iter()
+            .take_while(|&&(_, of)| of == parent);
+        for &(child, _) in own {
+            if !std::mem::replace(&mut moving[child], true) {
+                next.push(child);
+            }
         }
     }
     moving

@@ -3,13 +3,11 @@
 use super::bvh::{Accel, Primitives, Quality, SphereItem};
 use super::environment::environment;
 use super::extract::{Extracted, MeshItem};
-use super::instances::{instance, maps};
 use super::kept::{Flat, Kept, Sources};
 use super::lights::{self, Collector};
 use super::materials::{Means, Tables};
-use super::meshes::{
-    Keep, LocalMesh, MeshKey, Part, Soup, slot, smooth_normals, triangle, used_slots,
-};
+use super::meshes::{Keep, LocalMesh, MeshKey, Part, Soup, slot, smooth_normals, triangle};
+use super::place::{Placed, Places, place};
 use super::rebase::to_scene;
 use super::spheres;
 use crate::asset::{AssetStore, MeshId, PerCorner};
@@ -17,20 +15,20 @@ use crate::flat::{
     Environment, EnvironmentTable, Fresnel, Geometry, Instance, LightPlace, Lights, Material,
     MaterialId, Rebase, Spheres, Texture,
 };
-use crate::math::{Aabb, DAffine3, DVec3, Vec3};
+use crate::math::{Aabb, DVec3, Vec3};
 use crate::world::Normals;
-use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// What is kept from frame to frame: functions of a mesh and its normals, of a texture, or of the sky, alone.
 #[derive(Default)]
 pub(crate) struct Cache {
     smooth: BTreeMap<MeshKey, PerCorner<DVec3>>,
     local: BTreeMap<MeshKey, Arc<LocalMesh>>,
-    slots: BTreeMap<MeshId, Vec<bool>>,
+    /// Which slots of a mesh occur.
+    pub(crate) slots: BTreeMap<MeshId, Vec<bool>>,
     means: Means,
     sky: Option<Arc<EnvironmentTable>>,
 }
@@ -120,28 +118,26 @@ pub(crate) fn flatten(
         standing.sort_by_key(|sphere| sphere.prim);
     }
     lights.spheres(&spheres, &tables.materials);
+    let places = place(&items.meshes, context, cache, &mut tables);
     let mut flattener = Flattener {
         context,
         cache,
         tables,
         lights,
-        groups: Vec::new(),
-        shared: Shared::default(),
-        local_trees: Duration::ZERO,
+        places,
     };
-    let placed = flattener.place(&items.meshes);
-    let (sources, instances_moving) = flattener.sources(&items.meshes, &placed, standing);
+    let (sources, instances_moving) = flattener.sources(&items.meshes, standing);
     let world = kept.and_then(|kept| kept.world(&sources));
     let soup = world
         .is_none()
-        .then(|| flattener.soup(&items.meshes, &placed, sources.keep));
+        .then(|| flattener.soup(&items.meshes, sources.keep));
     let vertices = |prim: usize| match (&soup, world) {
         (Some(soup), _) => soup.triangles[prim],
         (None, Some(world)) => triangle(&world.triangles, prim),
         // One of both is there.
         (None, None) => [Vec3::NAN; 3],
     };
-    flattener.shine(&items.meshes, &placed, vertices);
+    flattener.shine(&items.meshes, vertices);
     for light in &items.lights {
         flattener.lights.punctual(light, &context.rebase);
     }
@@ -151,23 +147,27 @@ pub(crate) fn flatten(
     if let Some(environment) = &environment {
         flattener.lights.environment(environment);
     }
-    let Flattener { tables, shared, .. } = flattener;
+    let Flattener { tables, places, .. } = flattener;
     flattener.cache.means = tables.means;
     Flattened {
         sources,
         soup,
-        groups: flattener.groups,
+        groups: places
+            .flats
+            .into_iter()
+            .map(|flat| flat.triangles)
+            .collect(),
         spheres_moving: moving,
         instances_moving,
-        local: shared.geometries,
-        instances: shared.instances,
-        instance_materials: shared.materials,
+        local: places.geometries,
+        instances: places.instances,
+        instance_materials: places.materials,
         spheres,
         materials: tables.materials,
         textures: tables.textures,
         lights: flattener.lights.finish(),
         environment,
-        local_trees: flattener.local_trees,
+        local_trees: places.local_trees,
     }
 }
 
@@ -182,155 +182,43 @@ struct Flattener<'a> {
     cache: &'a mut Cache,
     tables: Tables<'a>,
     lights: Collector,
-    groups: Vec<Range<u32>>,
-    shared: Shared,
-    local_trees: Duration,
+    places: Places,
 }
-
-/// Instances and what they refer to.
-#[derive(Default)]
-struct Shared {
-    geometries: Vec<Arc<Geometry>>,
-    place: BTreeMap<MeshKey, u32>,
-    instances: Vec<Instance>,
-    materials: Vec<MaterialId>,
-}
-
-/// How a mesh entered the scene, with the materials of its slots.
-struct Placed {
-    way: Way,
-    slots: Vec<MaterialId>,
-}
-
-enum Way {
-    /// As triangles of the world, from this one on.
-    Flat(u32),
-    /// As this instance.
-    Instance(u32, Arc<LocalMesh>),
-}
-
-/// What an instance is made of.
-struct Seed<'a> {
-    item: &'a MeshItem,
-    local: Arc<LocalMesh>,
-    maps: [DAffine3; 2],
-    geometry: u32,
-    materials: u32,
-}
-
-impl Seed<'_> {
-    fn instance(&self) -> Instance {
-        instance(
-            &self.local,
-            self.item,
-            self.maps,
-            self.geometry,
-            self.materials,
-        )
-    }
-}
-
-/// Instances that one thread makes at a time: some tenths of a millisecond of work.
-const INSTANCES: usize = 256;
 
 impl Flattener<'_> {
-    /// Finds every mesh its way, its materials, and, if it is an instance, its place.
-    fn place<'i>(&mut self, items: &'i [MeshItem]) -> Vec<Placed> {
-        let mut uses: BTreeMap<MeshKey, u32> = BTreeMap::new();
-        for item in items {
-            *uses.entry(item.key()).or_default() += 1;
-        }
-        let mut triangles = 0;
-        let mut seeds = Vec::new();
-        let place = |item: &'i MeshItem| {
-            let shared = item.look.moves || uses[&item.key()] > 1;
-            let instanced = shared.then(|| self.maps(item)).flatten();
-            let mesh = self.context.store.mesh(item.mesh);
-            let used = self.cache.slots.entry(item.mesh);
-            let used = used.or_insert_with(|| used_slots(mesh));
-            let slots = self.tables.resolve_slots(&item.look, mesh, used);
-            let way = match instanced {
-                Some((local, maps)) => {
-                    seeds.push(self.seed(item, local.clone(), maps, &slots));
-                    Way::Instance(seeds.len() as u32 - 1, local)
-                }
-                None => {
-                    let first = triangles;
-                    triangles += mesh.triangle_count() as u32;
-                    self.groups.push(first..triangles);
-                    Way::Flat(first)
-                }
-            };
-            Placed { way, slots }
-        };
-        let placed = items.iter().map(place).collect();
-        let instances = seeds.par_iter().with_min_len(INSTANCES);
-        self.shared.instances = instances.map(Seed::instance).collect();
-        placed
-    }
-
-    /// The local geometry of a mesh that moves or repeats, and its maps; `None` if these have no way back in f32, so that it
-    /// must be flattened.
-    fn maps(&mut self, item: &MeshItem) -> Option<(Arc<LocalMesh>, [DAffine3; 2])> {
-        let start = Instant::now();
-        let local = self.cache.local(item, self.context);
-        self.local_trees += start.elapsed();
-        let maps = maps(&local.rebase, item, &self.context.rebase)?;
-        Some((local, maps))
-    }
-
-    /// What the next instance is made of, with its places in the tables.
-    fn seed<'i>(
-        &mut self,
-        item: &'i MeshItem,
-        local: Arc<LocalMesh>,
-        maps: [DAffine3; 2],
-        slots: &[MaterialId],
-    ) -> Seed<'i> {
-        let shared = &mut self.shared;
-        let next = shared.geometries.len() as u32;
-        let geometry = *shared.place.entry(item.key()).or_insert(next);
-        if geometry == next {
-            shared.geometries.push(local.geometry.clone());
-        }
-        let materials = shared.materials.len() as u32;
-        shared.materials.extend(slots);
-        Seed {
-            item,
-            local,
-            maps,
-            geometry,
-            materials,
-        }
-    }
-
     /// What stands is made of these; beside it, the instances that move and their boxes.
     fn sources(
         &mut self,
         items: &[MeshItem],
-        placed: &[Placed],
         spheres: Vec<SphereItem>,
     ) -> (Sources, (Vec<u32>, Vec<Aabb>)) {
         let mut flats = Vec::new();
         let mut keep = self.context.keep;
         let mut standing = (Vec::new(), Vec::new());
         let mut moving = (Vec::new(), Vec::new());
-        for (item, Placed { way, slots }) in items.iter().zip(placed) {
-            match way {
-                Way::Flat(_) => {
+        for (item, placed) in items.iter().zip(&self.places.placed) {
+            match placed {
+                Placed::Flat(index) => {
+                    let slots = &self.places.flats[*index as usize].slots;
                     keep.normals |= self.cache.normals(item, self.context.store).is_some();
                     flats.push(Flat {
                         key: item.key(),
-                        pose: item.look.pose,
-                        object: item.look.object,
+                        pose: *item.look.pose,
+                        object: item.look.object(),
                         slots: slots.clone(),
                     });
                 }
-                Way::Instance(index, _) => {
+                Placed::Instance(index) => {
                     let apart = item.look.moves && self.context.accel == Accel::Bvh;
                     let (ids, boxes) = if apart { &mut moving } else { &mut standing };
+                    if ids.is_empty() {
+                        // All of them, usually.
+                        let left = self.places.instances.len() - *index as usize;
+                        ids.reserve_exact(left);
+                        boxes.reserve_exact(left);
+                    }
                     ids.push(*index);
-                    boxes.push(bounds(&self.shared.instances[*index as usize]));
+                    boxes.push(bounds(&self.places.instances[*index as usize]));
                 }
             }
         }
@@ -344,44 +232,52 @@ impl Flattener<'_> {
     }
 
     /// The triangles of flattened meshes.
-    fn soup(&mut self, items: &[MeshItem], placed: &[Placed], keep: Keep) -> Soup {
+    fn soup(&mut self, items: &[MeshItem], keep: Keep) -> Soup {
         let mut soup = Soup::default();
-        for (item, Placed { way, slots }) in items.iter().zip(placed) {
-            let Way::Flat(_) = way else {
+        for (item, placed) in items.iter().zip(&self.places.placed) {
+            let Placed::Flat(index) = placed else {
                 continue;
             };
+            let slots = &self.places.flats[*index as usize].slots;
             let mesh = self.context.store.mesh(item.mesh);
             let part = Part {
                 mesh,
                 normals: self.cache.normals(item, self.context.store),
-                to: to_scene(&item.look.pose, &self.context.rebase),
+                to: to_scene(item.look.pose, &self.context.rebase),
                 keep,
             };
             let material = |prim| slots[slot(mesh, prim)].0;
-            soup.append(&part, Some(item.look.object), material);
+            soup.append(&part, Some(item.look.object()), material);
         }
         soup
     }
 
     /// Adds the triangles that shine; `flat` gives the vertices of one of the world.
-    fn shine(&mut self, items: &[MeshItem], placed: &[Placed], flat: impl Fn(usize) -> [Vec3; 3]) {
-        let emission = |id: MaterialId, of: &Tables| of.materials[id.0 as usize].emission;
-        for (item, Placed { way, slots }) in items.iter().zip(placed) {
+    fn shine(&mut self, items: &[MeshItem], flat: impl Fn(usize) -> [Vec3; 3]) {
+        let (places, materials) = (&self.places, &self.tables.materials);
+        let shines = |id: &MaterialId| materials[id.0 as usize].emission != [0.0; 3];
+        for (item, placed) in items.iter().zip(&places.placed) {
+            let slots = match placed {
+                Placed::Flat(index) => &places.flats[*index as usize].slots[..],
+                Placed::Instance(index) => {
+                    let first = places.instances[*index as usize].materials as usize;
+                    let slots = self.cache.slots.get(&item.mesh).map_or(0, Vec::len);
+                    &places.materials[first..first + slots]
+                }
+            };
             // Most meshes do not shine, and looking at their triangles would cost more than all the rest.
-            if slots
-                .iter()
-                .all(|&id| emission(id, &self.tables) == [0.0; 3])
-            {
+            if !slots.iter().any(shines) {
                 continue;
             }
             let mesh = self.context.store.mesh(item.mesh);
             for prim in 0..mesh.triangle_count() {
                 let material = slots[slot(mesh, prim as u32)];
-                if emission(material, &self.tables) == [0.0; 3] {
+                if !shines(&material) {
                     continue;
                 }
-                let (v, place) = match way {
-                    Way::Flat(first) => {
+                let (v, place) = match placed {
+                    Placed::Flat(index) => {
+                        let first = places.flats[*index as usize].triangles.start;
                         let place = LightPlace {
                             prim: first + prim as u32,
                             instance: None,
@@ -389,19 +285,21 @@ impl Flattener<'_> {
                         };
                         (flat(place.prim as usize), place)
                     }
-                    Way::Instance(index, local) => {
-                        let instance = &self.shared.instances[*index as usize];
+                    Placed::Instance(index) => {
+                        let instance = &places.instances[*index as usize];
                         let place = LightPlace {
                             prim: prim as u32,
                             instance: Some(*index),
                             mirrored: instance.mirrored,
                         };
-                        let v = triangle(&local.geometry.triangles, prim);
-                        (lights::placed(v, instance), place)
+                        let local = &places.geometries[instance.geometry as usize];
+                        (
+                            lights::placed(triangle(&local.triangles, prim), instance),
+                            place,
+                        )
                     }
                 };
-                self.lights
-                    .triangle(v, place, material, &self.tables.materials);
+                self.lights.triangle(v, place, material, materials);
             }
         }
     }
@@ -426,7 +324,8 @@ impl Cache {
         }
     }
 
-    fn local(&mut self, item: &MeshItem, context: &Context) -> Arc<LocalMesh> {
+    /// The local geometry of an item that moves or repeats.
+    pub(crate) fn local(&mut self, item: &MeshItem, context: &Context) -> Arc<LocalMesh> {
         if let Some(known) = self.local.get(&item.key()) {
             return known.clone();
         }

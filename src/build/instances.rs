@@ -20,33 +20,27 @@ const GAMMA: f64 = ROUNDINGS * UNIT / (1.0 - ROUNDINGS * UNIT);
 /// Coordinates that rays inside the scene start from and end at, scene units: the scene is about 1 wide around 0.
 const REACH: f64 = 2.0;
 
-/// The two maps of an instance in f64, or `None` where f32 cannot hold the way back: a mesh that is scaled to (almost)
-/// nothing along some axis must be flattened.
-pub(crate) fn maps(local: &Rebase, item: &MeshItem, scene: &Rebase) -> Option<[DAffine3; 2]> {
-    let to_world = local_to_scene(local, &item.look.pose, scene);
+/// The flat instance, whose places in the scene's tables are the caller's to fill in.
+pub(crate) fn instance(local: &LocalMesh, item: &MeshItem, scene: &Rebase) -> Instance {
+    let to_world = local_to_scene(&local.rebase, item.look.pose, scene);
     let to_local = to_world.inverse();
-    let fits = |m: &DAffine3| m.to_cols_array().iter().all(|x| (*x as f32).is_finite());
-    (fits(&to_world) && fits(&to_local)).then_some([to_world, to_local])
-}
-
-/// The flat instance; `geometry` and `materials` are its places in the scene's tables.
-pub(crate) fn instance(
-    local: &LocalMesh,
-    item: &MeshItem,
-    [to_world, to_local]: [DAffine3; 2],
-    geometry: u32,
-    materials: u32,
-) -> Instance {
     let bounds = bounds(local, &to_world, &to_local);
     Instance {
         to_world: rows(&to_world),
         to_local: rows(&to_local),
         bounds: [bounds.min.to_array(), bounds.max.to_array()],
-        geometry,
-        materials,
-        object: item.look.object,
+        geometry: 0,
+        materials: 0,
+        object: item.look.object(),
         mirrored: mirrors(&to_world.matrix3),
     }
+}
+
+/// Whether f32 can hold its maps: a mesh that is scaled to (almost) nothing along some axis has no way back, and must be
+/// flattened.
+pub(crate) fn is_invertible(instance: &Instance) -> bool {
+    let entries = instance.to_world.iter().chain(&instance.to_local);
+    entries.flatten().all(|x| x.is_finite())
 }
 
 /// A box of the transformed vertices, outward by what rounding can move a ray or a hit.

@@ -9,7 +9,7 @@ use crate::math::Aabb;
 use crate::world::Pose;
 
 /// All that the arrays are made of.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Sources {
     /// Flattened meshes.
     pub(crate) flats: Vec<Flat>,

@@ -63,11 +63,11 @@ impl Collector {
 
     /// Adds a light without extent.
     pub(crate) fn punctual(&mut self, item: &LightItem, rebase: &Rebase) {
-        let map = to_scene(&item.pose, rebase);
+        let map = to_scene(item.pose, rebase);
         let position = map.translation.to_array();
         let axis = unit(map.matrix3 * DVec3::NEG_Z).unwrap_or(DVec3::NEG_Z);
         let scaled = |intensity: [f64; 3]| intensity.map(|c| c * rebase.scale * rebase.scale);
-        let (light, share) = match item.light {
+        let (light, share) = match *item.light {
             Light::Point { intensity } => {
                 let intensity = scaled(intensity);
                 let light = Punctual::Point {

@@ -70,7 +70,7 @@ impl<'a> Tables<'a> {
             (None, None) => (Scatter::Diffuse, constant([DEFAULT_ALBEDO; 3]), NO_IOR),
         };
         let (emission, emission_source) = match (look.emission, file) {
-            (Some(emission), _) => (emission.map(|c| c as f32), None),
+            (Some(emission), _) => (emission.0.map(|c| c as f32), None),
             (None, Some(file)) => self.emission(file),
             (None, None) => ([0.0; 3], None),
         };

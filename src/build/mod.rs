@@ -22,6 +22,7 @@ mod lights;
 mod materials;
 mod meshes;
 mod needs;
+mod place;
 mod rebase;
 mod spheres;
 mod support;
@@ -29,18 +30,18 @@ mod support;
 pub use bvh::{Accel, Quality};
 pub use bytes::{BufferBytes, buffer_bytes};
 
-use crate::asset::AssetStore;
+use crate::asset::{AssetStore, MeshId};
 use crate::flat::{FlatScene, Fresnel, Geometry, PixelFilter, Rebase};
 use crate::math::Vec3;
-use crate::world::{Pose, poses};
+use crate::world::poses;
 use bvh::{Built, Standing};
 use extract::{Extracted, extract};
 use flatten::{Cache, Context, Flattened, flatten};
-use hecs::{Entity, World};
+use hecs::World;
 use kept::Kept;
 use materials::{Means, Tables};
 use meshes::{Keep, used_slots};
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 /// What the build must know besides the world.
@@ -95,8 +96,9 @@ impl SceneBuilder {
     /// Prepares the builds of a scene. The world may be posed at any time: the rebase comes from its poses at rest.
     #[must_use]
     pub fn new(world: &World, store: &AssetStore, options: BuildOptions) -> SceneBuilder {
-        let rest: HashMap<Entity, Pose> = poses(world, 0.0).into_iter().collect();
-        let rest = extract(world, |e| rest.get(&e).copied().unwrap_or_default());
+        let poses = poses(world, 0.0);
+        let mut rows = world.query();
+        let rest = extract(world, &mut rows, Some(&poses));
         SceneBuilder {
             store: store.clone(),
             options,
@@ -110,9 +112,8 @@ impl SceneBuilder {
     /// Builds the frame that the world is posed for; `frame` is what tells its noise from other frames'.
     pub fn build(&mut self, world: &World, frame: u32) -> (FlatScene, BuildTimes) {
         let start = Instant::now();
-        let extracted = extract(world, |e| {
-            world.get::<&Pose>(e).map(|p| *p).unwrap_or_default()
-        });
+        let mut rows = world.query();
+        let extracted = extract(world, &mut rows, None);
         let extracting = start.elapsed();
 
         let context = Context {
@@ -125,6 +126,9 @@ impl SceneBuilder {
         };
         let mut kept = self.kept.take();
         let mut flat = flatten(&extracted, &context, &mut self.cache, kept.as_ref());
+        let (pose, camera) = &extracted.camera;
+        let camera = camera::camera(pose, camera, &self.rebase, &self.options);
+        drop(extracted);
         let flattening = start.elapsed() - extracting - flat.local_trees;
 
         let start = Instant::now();
@@ -140,12 +144,11 @@ impl SceneBuilder {
                 (self.stand(&flat, &soup.triangles), soup.shading)
             }
         };
-        let built = self.tree(&flat, standing);
+        let built = self.tree(&mut flat, standing);
         let tree = start.elapsed() + flat.local_trees;
 
-        let (pose, camera) = &extracted.camera;
         let mut scene = FlatScene {
-            camera: camera::camera(pose, camera, &self.rebase, &self.options),
+            camera,
             world: Geometry {
                 triangles: built.triangles,
                 bvh: built.bvh,
@@ -190,11 +193,11 @@ impl SceneBuilder {
     }
 
     /// The tree of a frame, over what stands and what moves.
-    fn tree(&mut self, flat: &Flattened, (built, standing): (Built, Standing)) -> Built {
+    fn tree(&mut self, flat: &mut Flattened, (built, standing): (Built, Standing)) -> Built {
         let (ids, _) = &flat.instances_moving;
         match kept::above(built, &standing, &flat.moving(), ids) {
             Ok(built) => {
-                self.kept = Some(Kept::new(flat.sources.clone(), standing));
+                self.kept = Some(Kept::new(std::mem::take(&mut flat.sources), standing));
                 built
             }
             Err(standing) => {
@@ -231,9 +234,11 @@ fn keep(scene: &Extracted, store: &AssetStore, uv_aov: bool) -> Keep {
     for item in &scene.spheres {
         tables.resolve(&item.look, None);
     }
+    let mut slots: BTreeMap<MeshId, Vec<bool>> = BTreeMap::new();
     for item in &scene.meshes {
         let mesh = store.mesh(item.mesh);
-        tables.resolve_slots(&item.look, mesh, &used_slots(mesh));
+        let used = slots.entry(item.mesh).or_insert_with(|| used_slots(mesh));
+        tables.resolve_slots(&item.look, mesh, used);
     }
     let reads = |set| tables.textures.iter().any(|t| t.uv_set == set);
     Keep {

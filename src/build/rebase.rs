@@ -4,10 +4,11 @@
 //! that a scene that is scaled by one or moved along the other gives the same bits.
 
 use super::extract::Extracted;
-use crate::asset::{AssetStore, Mesh};
+use crate::asset::{AssetStore, Mesh, MeshId};
 use crate::flat::Rebase;
 use crate::math::{DAffine3, DMat3, DVec3};
 use crate::world::Pose;
+use std::collections::BTreeMap;
 
 /// A sphere this many times as wide as the rest of the scene is a wall: it neither widens the grid nor enters the tree.
 pub(crate) const WALL_RATIO: f64 = 16.0;
@@ -42,10 +43,10 @@ impl Extent {
         (self.max - self.min).max_element().max(0.0)
     }
 
-    fn of_mesh(mesh: &Mesh, to: &DAffine3) -> Extent {
+    fn of_points(points: &[DVec3], to: &DAffine3) -> Extent {
         let mut extent = Extent::EMPTY;
-        for corner in &mesh.corners {
-            extent.add(to.transform_point3(mesh.positions[*corner as usize]));
+        for point in points {
+            extent.add(to.transform_point3(*point));
         }
         extent
     }
@@ -65,15 +66,18 @@ pub(crate) fn of_scene(rest: &Extracted, store: &AssetStore) -> Rebase {
     };
     let mut extent = Extent::EMPTY;
     extent.add(to_scene(camera, &near).translation);
+    let mut points: BTreeMap<MeshId, Vec<DVec3>> = BTreeMap::new();
     for item in &rest.meshes {
-        let to = to_scene(&item.look.pose, &near);
-        extent.union(&Extent::of_mesh(store.mesh(item.mesh), &to));
+        let to = to_scene(item.look.pose, &near);
+        let points = points.entry(item.mesh);
+        let points = points.or_insert_with(|| used_points(store.mesh(item.mesh)));
+        extent.union(&Extent::of_points(points, &to));
     }
     let mut spheres: Vec<(f64, DVec3)> = rest
         .spheres
         .iter()
         .map(|s| {
-            let center = to_scene(&s.look.pose, &near).translation;
+            let center = to_scene(s.look.pose, &near).translation;
             (s.radius * s.look.pose.size, center)
         })
         .collect();
@@ -91,7 +95,21 @@ pub(crate) fn of_scene(rest: &Extracted, store: &AssetStore) -> Rebase {
 
 /// The rebase of a mesh's own space, for local geometry.
 pub(crate) fn of_mesh(mesh: &Mesh) -> Rebase {
-    on_grid(&Extent::of_mesh(mesh, &DAffine3::IDENTITY), DVec3::ZERO)
+    let extent = Extent::of_points(&used_points(mesh), &DAffine3::IDENTITY);
+    on_grid(&extent, DVec3::ZERO)
+}
+
+/// The vertices of all triangles, each once.
+fn used_points(mesh: &Mesh) -> Vec<DVec3> {
+    let mut used = vec![false; mesh.positions.len()];
+    for corner in &mesh.corners {
+        used[*corner as usize] = true;
+    }
+    let points = mesh.positions.iter().zip(used);
+    points
+        .filter(|(_, used)| *used)
+        .map(|(point, _)| *point)
+        .collect()
 }
 
 /// Centres and scales an extent whose coordinates are relative to `reference`.

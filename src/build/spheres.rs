@@ -22,7 +22,7 @@ pub(crate) fn flatten(
     let mut looped = Vec::new();
     let mut in_tree = [Vec::new(), Vec::new()];
     for (prim, item) in items.iter().enumerate() {
-        let pose = &item.look.pose;
+        let pose = item.look.pose;
         let center = to_scene(pose, rebase).translation.to_array();
         let radius = item.radius * pose.size * rebase.scale;
         let material: MaterialId = tables.resolve(&item.look, None);
@@ -30,7 +30,7 @@ pub(crate) fn flatten(
         spheres.radius.push(radius);
         spheres.inverted.push(item.inverted);
         spheres.material.push(material);
-        spheres.object.push(item.look.object);
+        spheres.object.push(item.look.object());
         if rotations {
             spheres.to_local.push(to_local(&pose.linear, pose.size));
         }

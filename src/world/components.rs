@@ -211,16 +211,19 @@ pub struct Pose {
 
 impl Default for Pose {
     fn default() -> Self {
-        Pose {
-            linear: DMat3::IDENTITY,
-            offset: DVec3::ZERO,
-            anchor: DVec3::ZERO,
-            size: 1.0,
-        }
+        Pose::IDENTITY
     }
 }
 
 impl Pose {
+    /// At the world's origin, as it is.
+    pub const IDENTITY: Pose = Pose {
+        linear: DMat3::IDENTITY,
+        offset: DVec3::ZERO,
+        anchor: DVec3::ZERO,
+        size: 1.0,
+    };
+
     /// As one affine map, local to world.
     #[must_use]
     pub fn affine(&self) -> DAffine3 {

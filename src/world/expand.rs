@@ -1,8 +1,8 @@
 //! The nodes of a glTF file become entities under the one that names the file.
 
 use super::components::{
-    AuthoringIndex, Camera, Ease, Emissive, Keys, Material, Name, Normals, Parent, Shape, Track,
-    Transform, Turn,
+    AuthoringIndex, Camera, Ease, Emissive, Keys, Material, Name, Normals, Parent, Pose, Shape,
+    Track, Transform, Turn,
 };
 use crate::asset::{Curve, Interpolation, MeshId, Model, ModelNode, Motion, NodeTransform};
 use crate::math::{DVec3, quaternion};
@@ -42,6 +42,7 @@ pub(super) fn expand(world: &mut World, model: &Model, root: &Root) -> Vec<Entit
 /// The components that need no other entity. The camera waits until it is known which one is meant.
 fn components(node: &ModelNode, mesh: Option<MeshId>, root: &Root) -> EntityBuilder {
     let mut builder = EntityBuilder::new();
+    builder.add(Pose::IDENTITY);
     builder.add(transform(&node.transform));
     if let Some(motion) = &node.motion {
         builder.add(keys(motion));

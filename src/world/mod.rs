@@ -18,5 +18,5 @@ pub use components::{
     AuthoringIndex, Camera, Color, Ease, Emissive, Keys, Light, Material, Name, Normals, Parent,
     Pose, Scattering, Shape, Sky, Spin, Track, Transform, Turn,
 };
-pub use pose::{Time, pose, poses};
+pub use pose::{Poses, Time, pose, poses};
 pub use spawn::{Spawned, open_files, spawn};

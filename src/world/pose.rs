@@ -2,8 +2,7 @@
 
 use super::components::{Keys, Parent, Pose, Spin, Transform};
 use crate::math::{DMat3, DVec3, axis_angle_deg};
-use hecs::{Entity, World};
-use std::collections::HashMap;
+use hecs::{Entity, Without, World};
 
 /// A time, as a frame and the frames in a second: what a turn takes in whole frames is a full turn to the bit, though a
 /// frame's time in seconds is rounded.
@@ -51,18 +50,44 @@ impl From<f64> for Time {
 
 /// Writes the [`Pose`] of every entity at a time. Nothing accumulates: poses of two equal times are equal bits.
 pub fn pose(world: &mut World, time: impl Into<Time>) {
-    for (entity, pose) in poses(world, time) {
+    let poses = poses(world, time);
+    let bare: Vec<Entity> = world
+        .query_mut::<Without<Entity, &Pose>>()
+        .into_iter()
+        .collect();
+    for entity in bare {
         // The entity was listed a moment ago, so the only error of this call, "no such entity", cannot happen.
-        let _ = world.insert_one(entity, pose);
+        let _ = world.insert_one(entity, Pose::default());
+    }
+    for (entity, pose) in world.query_mut::<(Entity, &mut Pose)>() {
+        *pose = *poses.of(entity);
     }
 }
 
-/// The pose of every entity at a time, in no particular order.
+/// The poses of all entities of a world at one time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Poses {
+    /// By the number of the entity.
+    all: Vec<Pose>,
+}
+
+impl Poses {
+    /// Where an entity of that world is.
+    #[must_use]
+    pub fn of(&self, entity: Entity) -> &Pose {
+        let pose = self.all.get(entity.id() as usize);
+        pose.unwrap_or(&Pose::IDENTITY)
+    }
+}
+
+/// The pose of every entity at a time.
 ///
 /// A parent link that closes a cycle or whose parent is gone is ignored; scene files with either are refused.
 #[must_use]
-pub fn poses(world: &World, time: impl Into<Time>) -> Vec<(Entity, Pose)> {
+pub fn poses(world: &World, time: impl Into<Time>) -> Poses {
     let time = time.into();
+    let mut all = Vec::with_capacity(world.len() as usize);
+    let mut children = Vec::new();
     let mut rows = world.query::<(
         Entity,
         Option<&Transform>,
@@ -70,41 +95,61 @@ pub fn poses(world: &World, time: impl Into<Time>) -> Vec<(Entity, Pose)> {
         Option<&Spin>,
         Option<&Parent>,
     )>();
-    let local = |(entity, transform, keys, spin, parent): (
-        _,
-        Option<&Transform>,
-        _,
-        _,
-        Option<&Parent>,
-    )| {
+    for (entity, transform, keys, spin, parent) in rows.iter() {
+        let own = entity.id() as usize;
+        if own >= all.len() {
+            all.resize(own + 1, Pose::default());
+        }
         let transform = transform.copied().unwrap_or_default();
-        let placed = Placed::at(&transform, keys, time.seconds());
-        (entity, Local::new(&placed, spin, parent.map(|p| p.0), time))
-    };
-    let locals: Vec<(Entity, Local)> = rows.iter().map(local).collect();
-    let place: HashMap<Entity, usize> = locals.iter().enumerate().map(|(i, l)| (l.0, i)).collect();
-    let mut posed: Vec<Option<Pose>> = vec![None; locals.len()];
-    let mut seen = vec![false; locals.len()];
+        all[own] = Placed::at(&transform, keys, time.seconds()).turned(spin, time);
+        if let Some(Parent(parent)) = parent.filter(|parent| world.contains(parent.0)) {
+            children.push((own, parent.id() as usize));
+        }
+    }
+    hang(&mut all, &children);
+    Poses { all }
+}
+
+/// Puts children, each with its parent, from their parents' frames into the world's, parents first.
+fn hang(all: &mut [Pose], children: &[(usize, usize)]) {
+    if children.is_empty() {
+        return;
+    }
+    let mut above = vec![None; all.len()];
+    for &(child, parent) in children {
+        above[child] = Some(parent);
+    }
+    // On the way up a chain, and when it is in the world.
+    let mut seen = vec![false; all.len()];
+    let mut placed = vec![false; all.len()];
     let mut chain = Vec::new();
-    for start in 0..locals.len() {
+    for &(start, _) in children {
         let mut next = Some(start);
         while let Some(i) = next.filter(|i| !seen[*i]) {
             seen[i] = true;
             chain.push(i);
-            next = locals[i].1.parent.and_then(|p| place.get(&p).copied());
+            next = above[i];
         }
-        let mut parent = next.and_then(|i| posed[i]);
+        // Of a cycle, nothing is in its place yet.
+        let mut parent = next.filter(|i| placed[*i]).map(|i| all[i]);
         while let Some(i) = chain.pop() {
-            let pose = locals[i].1.under(parent.as_ref());
-            posed[i] = Some(pose);
-            parent = Some(pose);
+            if let Some(parent) = &parent {
+                all[i] = under(parent, &all[i]);
+            }
+            placed[i] = true;
+            parent = Some(all[i]);
         }
     }
-    locals
-        .into_iter()
-        .zip(posed)
-        .map(|((entity, _), pose)| (entity, pose.unwrap_or_default()))
-        .collect()
+}
+
+/// The pose of what is at `own` in the frame of `parent`.
+fn under(parent: &Pose, own: &Pose) -> Pose {
+    Pose {
+        linear: parent.linear * own.linear,
+        offset: parent.linear * (own.anchor + own.offset) + parent.offset,
+        anchor: parent.anchor,
+        size: parent.size * own.size,
+    }
 }
 
 /// A transform with its keys at a time.
@@ -130,26 +175,16 @@ impl Placed {
             scale: scale.unwrap_or(transform.scale),
         }
     }
-}
 
-/// An entity's own map into its parent's frame: x ↦ `linear` · x + `translate` + `swing`.
-struct Local {
-    linear: DMat3,
-    translate: DVec3,
-    /// What keys have moved it by, and (Spin − 1)(translate − pivot), which is 0 to the bit after a full turn.
-    swing: DVec3,
-    size: f64,
-    parent: Option<Entity>,
-}
-
-impl Local {
-    fn new(placed: &Placed, spin: Option<&Spin>, parent: Option<Entity>, time: Time) -> Local {
+    /// The pose in the parent's frame. Its offset is what keys have moved it by, and (Spin − 1)(translate − pivot), which
+    /// is 0 to the bit after a full turn.
+    fn turned(self, spin: Option<&Spin>, time: Time) -> Pose {
         let Placed {
             translate,
             moved,
             rotate,
             scale,
-        } = *placed;
+        } = self;
         let turned = spin.map(|spin| {
             let turn = axis_angle_deg(spin.axis, time.of_rate(spin.deg_per_s));
             let arm = spin
@@ -158,33 +193,15 @@ impl Local {
             (turn * rotate, moved + (turn - DMat3::IDENTITY) * arm)
         });
         let (rotate, swing) = turned.unwrap_or((rotate, moved));
-        Local {
+        Pose {
             linear: DMat3::from_cols(
                 rotate.x_axis * scale.x,
                 rotate.y_axis * scale.y,
                 rotate.z_axis * scale.z,
             ),
-            translate,
-            swing,
+            offset: swing,
+            anchor: translate,
             size: scale.x.abs(),
-            parent,
-        }
-    }
-
-    fn under(&self, parent: Option<&Pose>) -> Pose {
-        match parent {
-            None => Pose {
-                linear: self.linear,
-                offset: self.swing,
-                anchor: self.translate,
-                size: self.size,
-            },
-            Some(parent) => Pose {
-                linear: parent.linear * self.linear,
-                offset: parent.linear * (self.translate + self.swing) + parent.offset,
-                anchor: parent.anchor,
-                size: parent.size * self.size,
-            },
         }
     }
 }

@@ -214,6 +214,8 @@ fn components(entity: &EntityDesc, index: u32, source: Source) -> EntityBuilder 
             entity: index,
             node: 0,
         })
+        // Here already, or the first pose would move all components to another place.
+        .add(Pose::IDENTITY)
         .add(transform(&entity.transform));
     if let Some(name) = &entity.name {
         builder.add(Name(name.clone()));

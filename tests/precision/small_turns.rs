@@ -51,7 +51,7 @@ fn a_million_parents_add_up() {
         last = world.spawn((turn, Parent(last)));
     }
     let poses = world::poses(&world, 0.0);
-    let (_, pose) = poses.iter().find(|(entity, _)| *entity == last).unwrap();
+    let pose = poses.of(last);
     let [angle, orthogonal] = errors(pose.linear, f64::from(TURNS) * RADIANS);
     println!("angle off by {angle:.1e}, orthogonal to {orthogonal:.1e}");
     assert!(angle <= 1e-9 && orthogonal <= 1e-9, "{angle} {orthogonal}");

@@ -53,12 +53,12 @@ impl Standing {
 
     /// Cuts the arrays of a frame back to what stands.
     pub fn cut_back(&self, bvh: &mut Bvh, spheres: &mut Vec<SphereBlock>) {
-        bvh.nodes.truncate(self.nodes);
-        bvh.instance_order.truncate(self.instances);
+        cut(&mut bvh.nodes, self.nodes);
+        cut(&mut bvh.instance_order, self.instances);
         bvh.root = self.root;
         bvh.bounds = self.bounds;
         bvh.depth = self.depth;
-        spheres.truncate(self.sphere_blocks);
+        cut(spheres, self.sphere_blocks);
     }
 
     /// The tree of a frame over `standing`, which is this, and spheres and instances that move.
@@ -84,14 +84,31 @@ impl Standing {
         if above.bvh.depth as usize > MAX_DEPTH {
             return Err(standing);
         }
-        standing.bvh.nodes.extend(above.bvh.nodes);
-        standing.bvh.instance_order.extend(above.bvh.instance_order);
+        append(&mut standing.bvh.nodes, above.bvh.nodes);
+        append(&mut standing.bvh.instance_order, above.bvh.instance_order);
         standing.bvh.root = above.bvh.root;
         standing.bvh.bounds = above.bvh.bounds;
         standing.bvh.depth = above.bvh.depth;
         standing.cost = above.cost;
-        standing.sphere_blocks.extend(above.sphere_blocks);
+        append(&mut standing.sphere_blocks, above.sphere_blocks);
         Ok(standing)
+    }
+}
+
+/// Puts `more` behind `all`, without a copy where that is nothing.
+fn append<T>(all: &mut Vec<T>, more: Vec<T>) {
+    if all.is_empty() {
+        *all = more;
+    } else {
+        all.extend(more);
+    }
+}
+
+/// Leaves the first `len`; of nothing, no room either.
+fn cut<T>(all: &mut Vec<T>, len: usize) {
+    all.truncate(len);
+    if len == 0 {
+        *all = Vec::new();
     }
 }
 
