@@ -11,7 +11,7 @@ use super::video::Video;
 use super::writer::{Account, Writer};
 use super::{diagnostics, interrupt, load, print_result, say};
 use crate::film::{self, Film};
-use crate::render::{Control, Renderer, Rendering, Stages};
+use crate::render::{Control, Renderer, Rendering};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -162,16 +162,15 @@ impl Run<'_> {
     /// Writes the films, and says what all of it cost.
     fn finish(self, frames: &FrameList, took: Duration) -> Result<(), Failure> {
         let rendered = self.rendered;
-        let beside = self
-            .beside_tracing
-            .checked_div(rendered)
-            .unwrap_or_default();
         let metadata = match frames.iter().next() {
             Some(frame) => self.encoding(frame).metadata,
             None => film::Metadata::default(),
         };
         drop(self.progress);
+        let start = Instant::now();
         self.video.finish(&metadata)?;
+        let beside = self.beside_tracing + start.elapsed();
+        let beside = beside.checked_div(rendered).unwrap_or_default();
         let samples = match self.args.noise {
             Some(_) => format!(", {}", spp_of_all(&self.spp)),
             None => String::new(),
@@ -213,7 +212,7 @@ impl Run<'_> {
         }
         let files = self.files.clone();
         let (exposure, aovs) = (dials.exposure, dials.aov.clone());
-        self.beside_tracing += beside_tracing(&rendering.stats.stages);
+        self.beside_tracing += rendering.stats.stages.beside_tracing();
         self.spp.push(rendering.stats.spp);
         let account = Account {
             frame,
@@ -275,10 +274,6 @@ impl Run<'_> {
 /// What to do about samples that are not finite.
 const LOST_HINT: &str =
     "`luxel render --replay FRAME,X,Y,SAMPLE` with the same options shows how one came about";
-
-fn beside_tracing(stages: &Stages) -> Duration {
-    stages.pose + stages.extract + stages.flatten + stages.bvh
-}
 
 /// What a frame cost but for its writing, and before that what it lost. `goal` is how wrong it was to be.
 fn line(frame: u32, rendering: &Rendering, goal: Option<f64>) -> String {

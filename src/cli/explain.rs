@@ -5,11 +5,15 @@ use super::failure::Failure;
 use super::names::entity_name;
 use super::{load, print_result};
 use crate::build::{BufferBytes, BuildTimes, buffer_bytes};
-use crate::flat::{ColorSource, FlatScene, Material, MaterialId, ObjectId, Opacity, Scatter};
+use crate::flat::{
+    ColorSource, FlatScene, Geometry, Material, MaterialId, ObjectId, Opacity, Scatter,
+};
 use crate::render::Settings;
 use crate::scene::{BackgroundDesc, FilterDesc, NormalsDesc, SceneDesc, ShapeDesc};
 use serde_json::{Value, json};
+use std::collections::BTreeSet;
 use std::fmt::Write;
+use std::sync::Arc;
 
 /// Frame that is explained: the rest pose.
 const FRAME: u32 = 0;
@@ -26,6 +30,7 @@ pub(crate) fn run(args: &InspectArgs) -> Result<(), Failure> {
         scene: &scene,
         times,
         hash: renderer.hash(),
+        wearers: wearers(&scene),
     };
     let text = match args.json {
         true => format!("{:#}\n", subject.json()),
@@ -40,6 +45,31 @@ struct Subject<'a> {
     scene: &'a FlatScene,
     times: BuildTimes,
     hash: &'a str,
+    /// Of each material, the first entity that has it.
+    wearers: Vec<Option<ObjectId>>,
+}
+
+/// The first entity of each material. Meshes are looked at once, however many instances they have.
+fn wearers(scene: &FlatScene) -> Vec<Option<ObjectId>> {
+    let mut wearers: Vec<Option<ObjectId>> = vec![None; scene.materials.len()];
+    let mut wear = |material: MaterialId, object: ObjectId| {
+        let wearer = &mut wearers[material.0 as usize];
+        *wearer = Some(wearer.map_or(object, |first| first.min(object)));
+    };
+    let spheres = scene.spheres.material.iter().zip(&scene.spheres.object);
+    spheres.for_each(|(material, object)| wear(*material, *object));
+    let shading = &scene.world.shading;
+    let triangles = shading.material.iter().zip(&shading.object);
+    triangles.for_each(|(material, object)| wear(MaterialId(*material), *object));
+    let slots = |local: &Arc<Geometry>| local.shading.material.iter().copied().collect();
+    let slots: Vec<BTreeSet<u32>> = scene.local.iter().map(slots).collect();
+    for instance in &scene.instances {
+        for slot in &slots[instance.geometry as usize] {
+            let index = instance.materials + slot;
+            wear(scene.instance_materials[index as usize], instance.object);
+        }
+    }
+    wearers
 }
 
 /// A thing that costs something: its name, whether this scene needs it, and who asked first.
@@ -123,26 +153,9 @@ impl Subject<'_> {
 
     /// The first entity with a material, its own or its file's, of which `wanted` holds.
     fn material(&self, wanted: impl Fn(&Material) -> bool) -> Option<String> {
-        let scene = self.scene;
-        let is_wanted = |id: MaterialId| wanted(&scene.materials[id.0 as usize]);
-        let spheres = scene.spheres.material.iter().zip(&scene.spheres.object);
-        let shading = &scene.world.shading;
-        let triangles = shading.material.iter().map(|&m| MaterialId(m));
-        let instances = scene.instances.iter().flat_map(|instance| {
-            let slots = scene.local[instance.geometry as usize]
-                .shading
-                .material
-                .iter();
-            slots.map(|slot| {
-                let index = instance.materials + slot;
-                (scene.instance_materials[index as usize], instance.object)
-            })
-        });
-        let all = spheres
-            .map(|(&m, &o)| (m, o))
-            .chain(triangles.zip(shading.object.iter().copied()))
-            .chain(instances);
-        let first = all.filter(|(m, _)| is_wanted(*m)).map(|(_, o)| o).min()?;
+        let wearers = self.scene.materials.iter().zip(&self.wearers);
+        let first = wearers.filter(|(material, _)| wanted(material));
+        let first = first.filter_map(|(_, wearer)| *wearer).min()?;
         Some(self.name(first))
     }
 

@@ -12,7 +12,7 @@ use crate::world;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// What to do about samples that are not finite.
 const LOST_HINT: &str = "write the scene by `--scene FILE`: then `luxel render FILE --replay FRAME,X,Y,SAMPLE` shows how one \
@@ -34,6 +34,7 @@ pub(crate) fn run(args: &TurntableArgs) -> Result<(), Failure> {
     let mut renderer = renderer(args, &turn)?;
     let mut frames = Frames::new(output, &turn);
     let (mut lost, mut named, mut spp) = (0, Vec::new(), Vec::new());
+    let mut beside = Duration::ZERO;
     progress.begin(Work {
         control: Arc::clone(&control),
         limit: None,
@@ -45,7 +46,9 @@ pub(crate) fn run(args: &TurntableArgs) -> Result<(), Failure> {
         if rendering.stats.stopped {
             break;
         }
+        let traced = Instant::now();
         frames.add(frame, &rendering)?;
+        beside += rendering.stats.stages.beside_tracing() + traced.elapsed();
         spp.push(rendering.stats.spp);
         lost += rendering.film.total_non_finite();
         named.extend(rendering.non_finite);
@@ -54,7 +57,9 @@ pub(crate) fn run(args: &TurntableArgs) -> Result<(), Failure> {
     if let Some(lost) = stats::lost(lost, &named) {
         say(&format!("warning: {lost}\n  = help: {LOST_HINT}"));
     }
+    let writing = Instant::now();
     let finished = frames.finish()?;
+    beside += writing.elapsed();
     if control.stopped() && finished.count < turn.frames {
         let told = finished.path.unwrap_or_else(|| "nothing".to_owned());
         say(&format!(
@@ -66,10 +71,11 @@ pub(crate) fn run(args: &TurntableArgs) -> Result<(), Failure> {
     let (width, height) = args.size;
     let path = finished.path.unwrap_or_default();
     say(&format!(
-        "{path} · {width}×{height} · {} frames · {} · {}",
+        "{path} · {width}×{height} · {} frames · {} · {}; beside tracing, {} a frame",
         turn.frames,
         stats::spp_of_all(&spp),
-        words(launched.elapsed())
+        words(launched.elapsed()),
+        words(beside.checked_div(turn.frames).unwrap_or_default())
     ));
     Ok(())
 }

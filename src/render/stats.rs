@@ -23,7 +23,13 @@ impl Stages {
     /// All of them together.
     #[must_use]
     pub fn total(&self) -> Duration {
-        self.pose + self.extract + self.flatten + self.bvh + self.pilot + self.trace
+        self.beside_tracing() + self.pilot + self.trace
+    }
+
+    /// What comes before the first ray.
+    #[must_use]
+    pub fn beside_tracing(&self) -> Duration {
+        self.pose + self.extract + self.flatten + self.bvh
     }
 }
 
