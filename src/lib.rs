@@ -114,6 +114,8 @@
 //!   no one must set `RequeueExit`, and not once they are cancelled.
 //! * The error of an image is looked at on the way only where somebody reads a log of it, and never that of a share.
 //! * `--noise` and `--time` without `--spp` do not stop at the scene's samples.
+//! * Samples come in fours of dimensions, which are even in base 4, as well as in pairs, which are so in base 2
+//!   (`trace::sampler`): what two pairs decide together converges as what one decides alone.
 //! * `world::AuthoringIndex` is a pair, entity and node, since one entity of a scene may stand for a file's many.
 //! * What moved is not asked of hecs's `ChangeTracker`: it compares with clones, as comparing what was extracted with the
 //!   frame before's does, but it needs the world mutable and does not see that a mesh became another. Poses are computed
