@@ -76,7 +76,7 @@ fn paths(scene: &FlatScene, seed: u64) -> Vec<Rays> {
                 continue;
             }
             let s = (hits.prim[i] & !Spheres::TAG) as usize;
-            let (center, radius) = (scene.spheres.center[s], scene.spheres.radius[s]);
+            let (center, radius) = (scene.spheres.center(s), scene.spheres.radius(s));
             let (p, ng) = sphere_point(ray, hits.t[i], center, radius);
             // The side that the ray came from, then by the cosine.
             let n = Vec3::from(ng) * -Vec3::from(ng).dot(Vec3::from(ray[1])).signum();

@@ -335,7 +335,7 @@ fn centres_of_walls_keep_the_bits_of_f64() {
         let Rebase { origin, scale } = built.rebase;
         for (axis, authored) in [0.1, center, 0.0].into_iter().enumerate() {
             let want = (authored - origin[axis]) * scale;
-            let error = (built.spheres.center[1][axis] - want).abs();
+            let error = (built.spheres.center(1)[axis] - want).abs();
             assert!(
                 error <= 4e-16 * want.abs(),
                 "{center}: {error} on axis {axis}"
@@ -498,9 +498,9 @@ fn materials_lights_and_needs_follow_the_entities() {
         panic!()
     };
     assert_eq!(total, 5.0 * first);
-    let r = scene.spheres.radius[0];
+    let r = scene.spheres.radius(0);
     assert!((first - 4.0 * std::f64::consts::PI * r * r).abs() < 1e-12);
-    assert_eq!(scene.spheres.radius[3], 2.0 * r);
+    assert_eq!(scene.spheres.radius(3), 2.0 * r);
     let needs = scene.needs;
     assert!(
         needs.triangles && needs.looped_spheres && needs.lights && needs.plastic && needs.glass

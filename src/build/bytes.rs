@@ -54,8 +54,7 @@ pub fn buffer_bytes(scene: &FlatScene) -> Vec<BufferBytes> {
         of_all("triangle file indices", &|g| {
             buffer("", &g.shading.file_prim)
         }),
-        buffer("sphere centres", &spheres.center),
-        buffer("sphere radii", &spheres.radius),
+        buffer("sphere centres, radii", &spheres.placed),
         buffer("sphere sides", &spheres.inverted),
         buffer("sphere materials", &spheres.material),
         buffer("sphere objects", &spheres.object),

@@ -26,7 +26,7 @@ pub(crate) struct Collector {
 impl Collector {
     /// Adds the spheres that emit.
     pub(crate) fn spheres(&mut self, spheres: &Spheres, materials: &[Material]) {
-        for (i, radius) in spheres.radius.iter().enumerate() {
+        for (i, [.., radius]) in spheres.placed.iter().enumerate() {
             let area = 4.0 * PI * radius * radius;
             if self.weigh(area, emission(materials, spheres.material[i])) {
                 self.lights.spheres.push(i as u32);

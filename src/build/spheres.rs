@@ -26,8 +26,8 @@ pub(crate) fn flatten(
         let center = to_scene(pose, rebase).translation.to_array();
         let radius = item.radius * pose.size * rebase.scale;
         let material: MaterialId = tables.resolve(&item.look, None);
-        spheres.center.push(center);
-        spheres.radius.push(radius);
+        let [x, y, z] = center;
+        spheres.placed.push([x, y, z, radius]);
         spheres.inverted.push(item.inverted);
         spheres.material.push(material);
         spheres.object.push(item.look.object());

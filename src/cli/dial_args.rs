@@ -52,6 +52,9 @@ pub(crate) struct DialArgs {
     /// Weigh light and material samples against each other (multiple importance sampling)
     #[arg(long, value_enum, default_value_t = Switch::On)]
     pub(crate) mis: Switch,
+    /// With --noise, give each part of the image as many samples as it needs; off, all of it the same
+    #[arg(long, value_enum, default_value_t = Switch::On)]
+    pub(crate) adaptive: Switch,
     /// End dim paths at random, without bias
     #[arg(long, value_enum, default_value_t = Switch::On)]
     pub(crate) roulette: Switch,
@@ -81,6 +84,7 @@ impl DialArgs {
             accel: self.accel.into(),
             quality: self.tree.into(),
             fixed_noise: self.fixed_noise,
+            adaptive: self.adaptive.is_on(),
             trace: TraceOptions {
                 max_bounces: self.bounces.unwrap_or(defaults.trace.max_bounces),
                 seed: self.seed,

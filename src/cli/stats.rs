@@ -73,16 +73,21 @@ pub(crate) fn error_words(bar: Option<&ErrorBar>) -> String {
 
 /// `64 spp`, and what ended a render where that was not their number; `goal` is how wrong it was to be.
 pub(crate) fn samples(stats: &Stats, goal: Option<f64>) -> String {
-    let spp = stats.spp;
+    let spp = match stats.cells {
+        Some((least, most)) if least < most => {
+            format!("{least} to {most} spp, {} on average", stats.spp)
+        }
+        _ => format!("{} spp", stats.spp),
+    };
     match (stats.ended, goal) {
-        (Ended::Time, _) => format!("{spp} spp, ended by --time"),
+        (Ended::Time, _) => format!("{spp}, ended by --time"),
         (Ended::Noise, Some(goal)) => format!(
-            "{spp} spp, ended by --noise {} % (pilot: {} spp)",
+            "{spp}, ended by --noise {} % (pilot: {} spp)",
             percent(goal, goal),
             stats.pilot
         ),
-        (_, Some(_)) => format!("{spp} spp, ended by --spp"),
-        _ => format!("{spp} spp"),
+        (_, Some(_)) => format!("{spp}, ended by --spp"),
+        _ => spp,
     }
 }
 

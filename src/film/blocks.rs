@@ -16,6 +16,7 @@
 //! shorter runs are all that there is.
 
 use super::Sums;
+use std::ops::Range;
 
 const BLOCK: u32 = Blocks::LENGTH;
 
@@ -101,6 +102,11 @@ impl Blocks {
     #[must_use]
     pub fn may_end(samples: u32, spp: u32) -> bool {
         samples.is_multiple_of(BLOCK) || samples == spp
+    }
+
+    /// Levels that are kept when so many samples are complete.
+    pub(super) fn levels(samples: u32) -> Range<u32> {
+        lowest(samples)..samples.ilog2()
     }
 
     /// Pairs of runs of 2ᵏ samples that were compared when so many samples are complete, if the level is kept.

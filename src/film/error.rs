@@ -48,7 +48,8 @@ pub struct ErrorBar {
     pub half_width: f64,
     /// Share of the mean variance in pixels where few samples carry most of the light.
     pub fragile: f64,
-    decay: Decay,
+    /// Share of the pixels that have equally many samples, and how their variance falls.
+    decays: Vec<(f64, Decay)>,
     mean_square: f64,
 }
 
@@ -62,7 +63,14 @@ impl ErrorBar {
     /// What `relative` would be with n ≥ 1 samples in every pixel.
     #[must_use]
     pub fn at(&self, n: u32) -> f64 {
-        ratio(self.decay.variance(n), self.mean_square)
+        let parts = self.decays.iter();
+        let variance = parts.map(|(share, decay)| share * decay.variance(n)).sum();
+        ratio(variance, self.mean_square)
+    }
+
+    /// What `relative` is relative to, squared: the mean over pixels of their squared radiance.
+    pub(super) fn mean_square(&self) -> f64 {
+        self.mean_square
     }
 
     /// The fewest samples per pixel, from `least` to `most`, with which the relative error is at most `wanted`; `most` if there
@@ -116,50 +124,115 @@ impl Sums {
     }
 }
 
+/// Pixels with equally many samples.
+struct Class {
+    /// Samples of each.
+    n: u32,
+    /// Levels of [`Blocks`] that tell their error; none if samples are independent.
+    levels: Vec<u32>,
+    /// Their sums, group by group.
+    groups: Vec<Sums>,
+}
+
+impl Class {
+    fn all(&self) -> Sums {
+        let mut all = Sums::zero(self.levels.len().max(1));
+        self.groups.iter().for_each(|group| all.add(group, 1.0));
+        all
+    }
+}
+
+/// The classes of a film, by rising samples, and that of every pixel.
+struct Classes {
+    classes: Vec<Class>,
+    of_pixel: Vec<u8>,
+}
+
 impl Film {
     /// The error of the radiance, if every pixel has at least two samples.
     #[must_use]
     pub fn error(&self) -> Option<ErrorBar> {
-        let n = self.samples();
-        if n < 2 || self.planes().rgb_squared.is_empty() {
-            return None;
-        }
-        let levels = self.seen_levels();
-        let mut groups = vec![Sums::zero(levels.len().max(1)); GROUPS];
+        let Classes {
+            mut classes,
+            of_pixel,
+        } = self.classes()?;
         for i in 0..self.pixels() {
-            let group = &mut groups[group_of(i)];
+            let class = &mut classes[usize::from(of_pixel[i])];
+            let group = &mut class.groups[group_of(i)];
             group.pixels += 1.0;
             let mean = self.mean(i);
             group.square += mean_of(mean.map(|m| m * m));
-            match levels.is_empty() {
+            match class.levels.is_empty() {
                 true => group.levels[0] += mean_of(self.scatter(i)),
                 false => {
-                    for (sum, &k) in group.levels.iter_mut().zip(&levels) {
+                    for (sum, &k) in group.levels.iter_mut().zip(&class.levels) {
                         let gain = self.planes().gains[k as usize][i];
                         *sum += mean_of(gain.map(f64::from));
                     }
                 }
             }
         }
-        let mut all = Sums::zero(levels.len().max(1));
-        for group in &groups {
-            all.add(group, 1.0);
+        let pixels = self.pixels() as f64;
+        let (mut square, mut variance) = (0.0, 0.0);
+        let (mut decays, mut scales) = (Vec::new(), Vec::new());
+        for class in &classes {
+            let all = class.all();
+            let decay = decay_of(&class.levels, &all)?;
+            square += all.square;
+            variance += all.pixels / pixels * decay.variance(class.n);
+            scales.push(Scale::new(&decay, &class.levels, class.n));
+            decays.push((all.pixels / pixels, decay));
         }
-        let decay = decay_of(&levels, &all)?;
-        let variance = decay.variance(n);
         // The mean of a pixel is off by its error, whose square is in the mean of its squares.
-        let mean_square = (all.square / all.pixels - variance).max(f64::MIN_POSITIVE);
+        let mean_square = (square / pixels - variance).max(f64::MIN_POSITIVE);
         let relative = ratio(variance, mean_square);
-        let (fragile, concentration) = self.shares(&decay, &levels, n);
-        let spread = jackknife(&levels, &groups, &all, n, variance) + concentration;
+        let (fragile, concentration) = self.shares(&scales, &of_pixel);
+        let spread = jackknife(&classes, &decays, variance) + concentration;
         // A root has half the relative deviation.
         let deviation = (spread / 4.0 + MODEL * MODEL).sqrt();
         Some(ErrorBar {
             relative,
             half_width: TWO_SIDED_95 * deviation * relative,
             fragile,
-            decay,
+            decays,
             mean_square,
+        })
+    }
+
+    /// Sorts pixels by their samples, those that were left out included; `None` if one has fewer than two.
+    fn classes(&self) -> Option<Classes> {
+        let planes = self.planes();
+        if planes.rgb_squared.is_empty() {
+            return None;
+        }
+        let samples = |i: usize| planes.count[i] + planes.non_finite.get(i).copied().unwrap_or(0);
+        let mut numbers: Vec<u32> = Vec::new();
+        for i in 0..self.pixels() {
+            // Neighbours are alike.
+            if i == 0 || samples(i) != samples(i - 1) {
+                if let Err(at) = numbers.binary_search(&samples(i)) {
+                    numbers.insert(at, samples(i));
+                }
+            }
+        }
+        if *numbers.first()? < 2 || numbers.len() > usize::from(u8::MAX) {
+            return None;
+        }
+        let place = |i: usize| numbers.partition_point(|n| *n < samples(i)) as u8;
+        let of_pixel = (0..self.pixels()).map(place).collect();
+        let seen = self.seen_levels();
+        let class = |&n: &u32| {
+            let own = Blocks::levels(n);
+            let levels: Vec<u32> = seen.iter().copied().filter(|k| own.contains(k)).collect();
+            Class {
+                n,
+                groups: vec![Sums::zero(levels.len().max(1)); GROUPS],
+                levels,
+            }
+        };
+        Some(Classes {
+            classes: numbers.iter().map(class).collect(),
+            of_pixel,
         })
     }
 
@@ -177,7 +250,7 @@ impl Film {
     }
 
     /// Samples of a pixel: as good as all have as many.
-    fn samples(&self) -> u32 {
+    pub(super) fn samples(&self) -> u32 {
         let pixels = self.pixels().max(1) as u64;
         ((self.total_samples() + pixels / 2) / pixels) as u32
     }
@@ -203,14 +276,10 @@ impl Film {
 
     /// The share of the variance in fragile pixels; and the squared relative deviation of the squared error that this one
     /// image has from its mean, if pixels' errors are normal: small where the error is spread over many pixels.
-    fn shares(&self, decay: &Decay, levels: &[u32], n: u32) -> (f64, f64) {
-        let scale = Scale::new(decay, levels, n);
+    fn shares(&self, scales: &[Scale], of_pixel: &[u8]) -> (f64, f64) {
         let (mut sum, mut square, mut fragile) = (0.0, 0.0, 0.0);
         for i in 0..self.pixels() {
-            let variance = match levels.is_empty() {
-                true => mean_of(self.scatter(i)),
-                false => mean_of(scale.variance(self, i)),
-            };
+            let variance = mean_of(scales[usize::from(of_pixel[i])].variance(self, i));
             sum += variance;
             square += variance * variance;
             if self.count_of(i) >= ENOUGH && self.stands_on_few(i) {
@@ -221,6 +290,18 @@ impl Film {
             return (0.0, 0.0);
         }
         (fragile / sum, 2.0 * square / (sum * sum))
+    }
+
+    /// The variance of each pixel's mean, and how that falls in all of them; `None` if pixels have not equally many
+    /// samples.
+    pub(super) fn pixel_variances(&self) -> Option<(Vec<f64>, Decay)> {
+        let bar = self.error()?;
+        let [(_, decay)] = bar.decays.as_slice() else {
+            return None;
+        };
+        let scale = Scale::new(decay, &self.seen_levels(), self.samples());
+        let variances = (0..self.pixels()).map(|i| mean_of(scale.variance(self, i)));
+        Some((variances.collect(), decay.clone()))
     }
 
     fn count_of(&self, i: usize) -> u32 {
@@ -238,11 +319,15 @@ impl Film {
     /// A pixel has few blocks: its neighbours' help, with a quarter of its own weight each. And how much a level tells of
     /// the whole, pixels say together, each with the same weight, or the few with the largest errors would say it for all.
     pub(super) fn block_errors(&self) -> Option<Vec<[f32; 3]>> {
-        let levels = self.seen_levels();
-        let n = self.samples();
-        let mut sums = Sums::zero(levels.len());
+        let Classes { classes, of_pixel } = self.classes()?;
+        let mut sums: Vec<Sums> = classes
+            .iter()
+            .map(|class| Sums::zero(class.levels.len()))
+            .collect();
         for i in 0..self.pixels() {
-            let gains: Vec<f64> = levels
+            let class = usize::from(of_pixel[i]);
+            let gains: Vec<f64> = classes[class]
+                .levels
                 .iter()
                 .map(|&k| mean_of(self.planes().gains[k as usize][i].map(f64::from)))
                 .collect();
@@ -252,25 +337,29 @@ impl Film {
                 .map(|(gain, k)| gain * f64::from(1u32 << k));
             let whole: f64 = steps.sum();
             if whole > 0.0 {
-                sums.pixels += 1.0;
-                for (sum, gain) in sums.levels.iter_mut().zip(gains) {
+                sums[class].pixels += 1.0;
+                for (sum, gain) in sums[class].levels.iter_mut().zip(gains) {
                     *sum += gain / whole;
                 }
             }
         }
-        sums.pixels = sums.pixels.max(1.0);
-        let decay = match levels.is_empty() {
-            true => return None,
-            false => decay_of(&levels, &sums)?,
-        };
-        let scale = Scale::new(&decay, &levels, n);
+        let mut scales = Vec::new();
+        for (class, sums) in classes.iter().zip(&mut sums) {
+            sums.pixels = sums.pixels.max(1.0);
+            let decay = match class.levels.is_empty() {
+                true => return None,
+                false => decay_of(&class.levels, sums)?,
+            };
+            scales.push(Scale::new(&decay, &class.levels, class.n));
+        }
+        let scale = |i: usize| &scales[usize::from(of_pixel[i])];
         let variances: Vec<[f64; 3]> = (0..self.pixels())
-            .map(|i| scale.variance(self, i))
+            .map(|i| scale(i).variance(self, i))
             .collect();
         let (width, height) = (self.width() as usize, self.height() as usize);
-        let student = 1.0 + STUDENT / (ALIKE * scale.pairs);
-        let widening = student * student;
         let smooth = |i: usize| {
+            let student = 1.0 + STUDENT / (ALIKE * scale(i).pairs);
+            let widening = student * student;
             let (x, y) = (i % width, i / width);
             let (mut sum, mut weights) = ([0.0; 3], 0.0);
             for row in y.saturating_sub(1)..=(y + 1).min(height - 1) {
@@ -290,8 +379,10 @@ impl Film {
 
 /// From the differences of a pixel's blocks to the variance of its mean.
 struct Scale {
-    /// (level, by what its mean squared half-difference is multiplied).
+    /// (level, by what its mean squared half-difference is multiplied); none if samples are independent.
     factors: Vec<(u32, f64)>,
+    /// Samples.
+    n: u32,
     /// Pairs of blocks of one pixel, of all levels.
     pairs: f64,
 }
@@ -308,11 +399,15 @@ impl Scale {
         };
         Scale {
             factors: levels.iter().map(factor).collect(),
+            n,
             pairs: all,
         }
     }
 
     fn variance(&self, film: &Film, i: usize) -> [f64; 3] {
+        if self.factors.is_empty() {
+            return film.scatter(i).map(|scatter| scatter / f64::from(self.n));
+        }
         let mut variance = [0.0; 3];
         for &(k, factor) in &self.factors {
             let gain = film.planes().gains[k as usize][i];
@@ -339,17 +434,24 @@ fn decay_of(levels: &[u32], sums: &Sums) -> Option<Decay> {
 }
 
 /// Squared relative deviation of the variance, by leaving out one group of pixels after the other.
-fn jackknife(levels: &[u32], groups: &[Sums], all: &Sums, n: u32, variance: f64) -> f64 {
+fn jackknife(classes: &[Class], decays: &[(f64, Decay)], variance: f64) -> f64 {
     if variance <= 0.0 {
         return 0.0;
     }
-    let without = |group: &Sums| {
-        let mut rest = all.clone();
-        rest.add(group, -1.0);
-        rest.pixels = rest.pixels.max(1.0);
-        decay_of(levels, &rest).map_or(0.0, |decay| decay.variance(n))
+    let all: Vec<Sums> = classes.iter().map(Class::all).collect();
+    let without = |group: usize| -> f64 {
+        let of = |((class, all), (share, decay)): ((&Class, &Sums), &(f64, Decay))| {
+            let mut rest = all.clone();
+            rest.add(&class.groups[group], -1.0);
+            let decay = match rest.pixels > 0.0 {
+                true => decay_of(&class.levels, &rest),
+                false => Some(decay.clone()),
+            };
+            share * decay.map_or(0.0, |decay| decay.variance(class.n))
+        };
+        classes.iter().zip(&all).zip(decays).map(of).sum()
     };
-    let values: Vec<f64> = groups.iter().map(without).collect();
+    let values: Vec<f64> = (0..GROUPS).map(without).collect();
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
     let squares: f64 = values.iter().map(|v| (v - mean) * (v - mean)).sum();

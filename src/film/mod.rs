@@ -9,6 +9,7 @@
 //! Deliberately absent: scenes, rays, tiles in flight, the choice of what to render, any clamp or filter of radiance
 //! before the 8-bit picture.
 
+mod allot;
 pub mod aov;
 mod blocks;
 mod decay;

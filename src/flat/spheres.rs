@@ -24,10 +24,8 @@ pub struct Spheres {
     pub looped: Vec<SphereBlock>,
     /// Spheres in the tree, in leaf order.
     pub blocks: Vec<SphereBlock>,
-    /// Centres in authoring order, scene units.
-    pub center: Vec<[f64; 3]>,
-    /// Radii in authoring order, scene units.
-    pub radius: Vec<f64>,
+    /// Centre and radius of each in authoring order, scene units: what is read together lies together.
+    pub placed: Vec<[f64; 4]>,
     /// Whether normals point inward.
     pub inverted: Vec<bool>,
     /// Material of each.
@@ -42,4 +40,19 @@ pub struct Spheres {
 impl Spheres {
     /// Marks a sphere's primitive id in a hit.
     pub const TAG: u32 = 1 << 31;
+
+    /// Centre of a sphere.
+    #[inline(always)]
+    #[must_use]
+    pub fn center(&self, sphere: usize) -> [f64; 3] {
+        let [x, y, z, _] = self.placed[sphere];
+        [x, y, z]
+    }
+
+    /// Radius of a sphere.
+    #[inline(always)]
+    #[must_use]
+    pub fn radius(&self, sphere: usize) -> f64 {
+        self.placed[sphere][3]
+    }
 }

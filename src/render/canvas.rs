@@ -33,6 +33,8 @@ pub struct Canvas {
 #[derive(Clone, Debug)]
 pub(super) struct Tile {
     pub(super) patch: Patch,
+    /// One after the last sample that it is to have, if it has not all by then.
+    pub(super) goal: u32,
     /// Rays traced: closest hits and occlusion tests.
     pub(super) rays: [u64; 2],
 }
@@ -42,7 +44,14 @@ impl Canvas {
     #[must_use]
     pub fn new(settings: &Settings, share: &Share) -> Canvas {
         let independent = settings.trace.sampler == Sampler::Independent;
-        Canvas::blank(settings.size, settings.tile, share, independent)
+        Canvas::blank(settings.size, settings.side(), share, independent)
+    }
+
+    /// Says how many samples each tile is to have.
+    pub(super) fn set_goals(&self, goals: &[u32]) {
+        for (tile, &goal) in self.tiles.iter().zip(goals) {
+            lock(tile).goal = goal;
+        }
     }
 
     pub(super) fn blank(size: (u32, u32), side: u32, share: &Share, independent: bool) -> Canvas {
@@ -59,6 +68,7 @@ impl Canvas {
         let tile = |patch| {
             Mutex::new(Tile {
                 patch,
+                goal: u32::MAX,
                 rays: [0; 2],
             })
         };
@@ -106,6 +116,23 @@ impl Canvas {
         (done().min().unwrap_or(0), done().max().unwrap_or(0))
     }
 
+    /// The mean over pixels of what each tile is to have, rounded.
+    pub(super) fn mean(&self, goals: &[u32]) -> u32 {
+        let (mut pixels, mut samples) = (0, 0);
+        for (patch, &goal) in self.patches().zip(goals) {
+            let size = u64::from(patch.window.width) * u64::from(patch.window.height);
+            pixels += size;
+            samples += size * u64::from(goal);
+        }
+        ((samples + pixels / 2) / pixels.max(1)) as u32
+    }
+
+    /// The mean over pixels of what they have, rounded.
+    pub(super) fn mean_done(&self) -> u32 {
+        let done: Vec<u32> = self.patches().map(|patch| patch.done).collect();
+        self.mean(&done)
+    }
+
     /// Samples of all pixels together.
     #[must_use]
     pub fn samples(&self) -> u64 {
@@ -116,13 +143,14 @@ impl Canvas {
         self.patches().map(of).sum()
     }
 
-    /// Samples that are missing up to `end` in every pixel.
+    /// Samples that are missing up to `end` in every pixel, or up to its tile's goal.
     pub(super) fn missing(&self, end: u32) -> u64 {
-        let of = |patch: PatchGuard<'_>| {
-            let w = patch.window;
+        let of = |tile: &Mutex<Tile>| {
+            let Tile { patch, goal, .. } = &*lock(tile);
+            let (w, end) = (patch.window, end.min(*goal));
             u64::from(w.width) * u64::from(w.height) * u64::from(end.saturating_sub(patch.done))
         };
-        self.patches().map(of).sum()
+        self.tiles.iter().map(of).sum()
     }
 
     /// The film as it would be if this were all.

@@ -246,30 +246,43 @@ impl Renderer {
         mut watch: impl FnMut(u32, Duration) + Send,
     ) -> Stats {
         let start = Instant::now();
-        let known = canvas.verdict();
-        let ask = |wanted| self.ask_pilot(wanted, scene, control, deadline);
-        let verdict = settings
-            .noise
-            .map(|wanted| *canvas.verdict.get_or_init(|| ask(wanted)));
+        // Where samples are to go, nobody has written down.
+        let known = canvas.verdict().filter(|_| !settings.is_adaptive());
+        let mut goals = Vec::new();
+        let verdict = settings.noise.map(|wanted| {
+            known.unwrap_or_else(|| {
+                let verdict;
+                (verdict, goals) = self.ask_pilot(wanted, scene, control, deadline);
+                canvas.trust(verdict);
+                verdict
+            })
+        });
         let piloted = start.elapsed();
+        canvas.set_goals(&goals);
         let end = canvas.end.unwrap_or(settings.spp);
-        let goal = verdict.map_or(end, |verdict| verdict.spp);
+        let mean = verdict.map_or(end, |verdict| verdict.spp);
+        let goal = goals.iter().copied().max().unwrap_or(mean);
         let pilot = verdict.map_or(0, |verdict| verdict.pilot);
         let piloted_now = if known.is_some() { 0 } else { pilot };
         let pixels = u64::from(settings.size.0) * u64::from(settings.size.1);
         control.expect(pixels * u64::from(piloted_now) + canvas.missing(goal));
         let passes = Passes::new(canvas.done().0, goal, deadline);
         let watch = |spp| watch(spp, start.elapsed());
-        let spp = self.run(scene, &settings.trace, canvas, (passes, control), watch);
+        let complete = self.run(scene, &settings.trace, canvas, (passes, control), watch);
+        let all = complete >= goal;
         let mut stats = Stats {
             threads: self.pool.current_num_threads(),
             // A deadline ends before all samples too, but on purpose.
-            stopped: control.stopped() && spp < goal,
-            spp,
+            stopped: control.stopped() && !all,
+            spp: match goals.is_empty() {
+                true => complete,
+                false => canvas.mean_done(),
+            },
+            cells: goals.iter().min().map(|least| (*least, goal)),
             pilot,
             ended: match verdict {
-                _ if spp < goal => Ended::Time,
-                Some(_) if goal < settings.spp => Ended::Noise,
+                _ if !all => Ended::Time,
+                Some(_) if mean < settings.spp => Ended::Noise,
                 _ => Ended::Samples,
             },
             ..Stats::default()
@@ -291,13 +304,14 @@ impl Renderer {
         scene: &FlatScene,
         control: &Control,
         deadline: Option<Deadline>,
-    ) -> Verdict {
+    ) -> (Verdict, Vec<u32>) {
         let settings = &self.settings;
         let options = pilot::options(&settings.trace);
         let canvas = Canvas::new(settings, &Share::default());
         let most = settings.spp;
         let run =
             |canvas: &Canvas, passes| self.run(scene, &options, canvas, (passes, control), |_| ());
+        let wanted = (wanted, settings.is_adaptive());
         pilot::ask(wanted, most, settings.size, &canvas, control, deadline, run)
     }
 

@@ -48,6 +48,9 @@ pub(super) fn metadata(
     }
     if let Some(error) = settings.noise.filter(|_| !samples.cut) {
         metadata.push("error", wanted(error, settings.spp));
+        if !settings.adaptive {
+            metadata.push("adaptive", "off");
+        }
     }
     metadata.push("seed", dials.seed);
     metadata.push("bounces", dials.max_bounces);

@@ -5,7 +5,8 @@
 //! a mean of n samples as any other. And n depends on scene, frame and seed alone.
 
 use super::passes::{Deadline, Passes};
-use super::{Canvas, Control};
+use super::{Canvas, Control, Settings};
+use crate::film::Blocks;
 use crate::trace::TraceOptions;
 
 /// Samples of the shortest pilot.
@@ -15,8 +16,14 @@ const SHORTEST: u32 = 16;
 /// doublings, no more.
 const PART: u32 = 8;
 
+/// And at least this part of what it asks for in any cell.
+const PART_OF_LONGEST: u32 = 16;
+
 /// Fewest samples of an image for which the error is asked: fewer say nothing about it.
 const FEWEST: u32 = 4;
+
+/// Fewest samples of a cell: a block, of which something can be told.
+const LEAST: u32 = Blocks::LENGTH;
 
 /// Share of the time that the pilot may take.
 const TIME: f64 = 0.125;
@@ -24,7 +31,7 @@ const TIME: f64 = 0.125;
 /// What the pilot found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Verdict {
-    /// Samples per pixel that reach the error, or the most there may be.
+    /// Samples per pixel that reach the error, on average, or the most there may be.
     pub spp: u32,
     /// Samples per pixel of the pilot.
     pub pilot: u32,
@@ -41,17 +48,18 @@ pub(super) fn options(options: &TraceOptions) -> TraceOptions {
     }
 }
 
-/// How many samples, at most `most`, give a relative error of `wanted`. `trace` completes the passes that it is given and
+/// How many samples, at most `most`, give a relative error of `wanted`: of every pixel, or of each cell of the canvas as far as
+/// they differ. `trace` completes the passes that it is given and
 /// says how many samples there are.
 pub(super) fn ask(
-    wanted: f64,
+    (wanted, adaptive): (f64, bool),
     most: u32,
     size: (u32, u32),
     canvas: &Canvas,
     control: &Control,
     deadline: Option<Deadline>,
     trace: impl Fn(&Canvas, Passes) -> u32,
-) -> Verdict {
+) -> (Verdict, Vec<u32>) {
     let pixels = u64::from(size.0) * u64::from(size.1);
     let deadline = deadline.map(|deadline| deadline.part(TIME));
     let mut pilot = 0;
@@ -59,17 +67,27 @@ pub(super) fn ask(
         let goal = (2 * pilot).max(SHORTEST);
         control.expect(pixels * u64::from(goal + most.min(goal.saturating_mul(PART))));
         let complete = trace(canvas, Passes::new(pilot, goal, deadline));
-        let spp = canvas
-            .film()
-            .error()
-            .map_or(most, |bar| bar.samples_for(wanted, FEWEST, most));
+        let film = canvas.film();
+        let (spp, goals) = match adaptive {
+            true => {
+                let goals = film.allot(wanted, Settings::CELL, LEAST, most);
+                goals.map_or((most, Vec::new()), |goals| (canvas.mean(&goals), goals))
+            }
+            false => {
+                let bar = film.error();
+                let spp = bar.map_or(most, |bar| bar.samples_for(wanted, FEWEST, most));
+                (spp, Vec::new())
+            }
+        };
         let verdict = Verdict {
             spp,
             pilot: complete,
         };
+        let longest = goals.iter().copied().max().unwrap_or(0);
+        let long = goal >= spp.div_ceil(PART) && goal >= longest.div_ceil(PART_OF_LONGEST);
         // Cut off by the time, or by Ctrl-C; or long enough.
-        if complete < goal || goal >= spp.div_ceil(PART) {
-            return verdict;
+        if complete < goal || long {
+            return (verdict, goals);
         }
         pilot = goal;
     }

@@ -15,6 +15,8 @@ pub struct Settings {
     /// Stop where the relative error (see [`crate::film::ErrorBar`]) is this, if that comes first. A pilot from another seed
     /// says how many samples that takes.
     pub noise: Option<f64>,
+    /// Where `noise` ends the render: give the parts of the image as many samples as each of them needs, not all the same.
+    pub adaptive: bool,
     /// Stop when this is over, if that comes first; at least one sample per pixel is traced.
     pub time: Option<Duration>,
     /// Worker threads; as many as the thread that starts the renderer has in its pool, if not said.
@@ -35,6 +37,24 @@ impl Settings {
     /// Side of a tile: small enough that the last tiles leave no thread idle for long, large enough for a batch.
     pub const DEFAULT_TILE: u32 = 32;
 
+    /// Side of what has one number of samples, where that number is not the same everywhere: small enough to follow edges, and
+    /// enough pixels to tell its error.
+    pub(super) const CELL: u32 = 8;
+
+    /// Whether parts of the image may have different numbers of samples.
+    #[must_use]
+    pub fn is_adaptive(&self) -> bool {
+        self.adaptive && self.noise.is_some()
+    }
+
+    /// Side of what is traced at once.
+    pub(super) fn side(&self) -> u32 {
+        match self.is_adaptive() {
+            true => Settings::CELL,
+            false => self.tile,
+        }
+    }
+
     /// What a scene file asks for, exactly and on all threads.
     #[must_use]
     pub fn of_scene(desc: &SceneDesc) -> Settings {
@@ -42,6 +62,7 @@ impl Settings {
             size: desc.render.size,
             spp: desc.render.spp,
             noise: None,
+            adaptive: true,
             time: None,
             threads: None,
             tile: Settings::DEFAULT_TILE,

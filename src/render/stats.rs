@@ -58,8 +58,10 @@ pub struct Stats {
     pub bytes: usize,
     /// Threads.
     pub threads: usize,
-    /// Samples that every pixel has.
+    /// Samples that every pixel has; the mean, where not all have as many.
     pub spp: u32,
+    /// The fewest and the most that parts of the image were given, where not all have as many.
+    pub cells: Option<(u32, u32)>,
     /// Samples per pixel that were traced to find how many the wanted error takes, and that are not in the image.
     pub pilot: u32,
     /// What ended the render.

@@ -52,12 +52,13 @@ fn trace_pass(
     trace: &mut impl FnMut(Rect, Range<u32>, &mut TileSums),
     spare: &mut Sums,
 ) {
-    let Tile { patch, rays } = tile;
+    let Tile { patch, goal, rays } = tile;
+    let end = pass.samples.end.min(*goal);
     let rect = rect(patch.window);
     let pixels = u64::from(rect.width) * u64::from(rect.height);
     let late = || pass.until.is_some_and(|until| Instant::now() >= until);
-    while patch.done < pass.samples.end && !control.stopped() && !late() {
-        let samples = patch.done..pass.samples.end.min(Blocks::next(patch.done));
+    while patch.done < end && !control.stopped() && !late() {
+        let samples = patch.done..end.min(Blocks::next(patch.done));
         let mut sums = lend(patch);
         trace(rect, samples.clone(), &mut sums);
         rays[0] += sums.rays[0];

@@ -1,13 +1,9 @@
 //! Grouping: which paths missed, what the others hit, how that scatters, and whether it shines. One pass over the hits,
 //! which also looks up materials and their constant colours.
-#![allow(
-    clippy::needless_range_loop,
-    reason = "paths are numbers here: several arrays are indexed by one"
-)]
-
 use super::Hits;
-use super::wave::Wave;
+use super::wave::{Surfaces, Wave};
 use crate::flat::{ColorSource, FlatScene, Scatter, Spheres};
+use std::ops::Range;
 
 /// Paths by what became of them, as indices that rise.
 #[derive(Debug, Default)]
@@ -23,7 +19,7 @@ pub(super) struct Groups {
 }
 
 /// What a hit is on.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Shape {
     Sphere,
     /// Of the world.
@@ -54,6 +50,17 @@ impl Groups {
     }
 }
 
+/// What became of a path, as far as lists go.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Fate {
+    /// `None` if it hit nothing.
+    hit: Option<(Shape, Scatter)>,
+    emits: bool,
+}
+
+/// So many paths are looked at together: mostly, all share one fate, and their lists grow by as many at once.
+const TOGETHER: usize = 8;
+
 /// Fills `wave.groups` and `wave.alive`, and of `wave.surfaces` material and colour, as far as no texture is asked for.
 #[inline(always)]
 pub(super) fn group(wave: &mut Wave, scene: &FlatScene) {
@@ -69,33 +76,69 @@ pub(super) fn group(wave: &mut Wave, scene: &FlatScene) {
     let n = paths.len();
     surfaces.reserve(n);
     alive.clear();
-    alive.resize(n, false);
-    // Cut to one length, so that i is compared with it once.
-    let (prims, alive) = (&hits.prim[..n], &mut alive[..n]);
-    let [r, g, b] = &mut surfaces.color;
-    let [r, g, b] = [&mut r[..n], &mut g[..n], &mut b[..n]];
-    let ids = &mut surfaces.material[..n];
-    for i in 0..n {
-        if prims[i] == Hits::NONE {
-            groups.missed.push(i as u32);
+    for first in (0..n).step_by(TOGETHER) {
+        let end = n.min(first + TOGETHER);
+        let fate = look(scene, hits, surfaces, first);
+        let mut fates = [fate; TOGETHER];
+        let mut shared = true;
+        for i in first + 1..end {
+            fates[i - first] = look(scene, hits, surfaces, i);
+            shared &= fates[i - first] == fate;
+        }
+        if shared {
+            groups.add(first as u32..end as u32, fate, alive);
             continue;
         }
-        let shape = Shape::of(hits, i);
-        let id = material(scene, hits, i, shape);
-        let material = &scene.materials[id as usize];
-        groups.by_shape[shape as usize].push(i as u32);
-        groups.by_scatter[material.scatter as usize].push(i as u32);
-        let scatters = material.scatter != Scatter::Nothing;
-        alive[i] = scatters;
-        let [er, eg, eb] = material.emission;
-        if (er > 0.0) | (eg > 0.0) | (eb > 0.0) {
-            groups.at_emitters.push(i as u32);
+        for (i, fate) in (first..end).zip(fates) {
+            groups.add(i as u32..i as u32 + 1, fate, alive);
         }
-        ids[i] = id;
-        [r[i], g[i], b[i]] = match material.color {
-            ColorSource::Constant(color) if scatters => color,
-            _ => [0.0; 3],
+    }
+}
+
+impl Groups {
+    /// Adds paths of one fate to their lists.
+    #[inline(always)]
+    fn add(&mut self, paths: Range<u32>, fate: Fate, alive: &mut Vec<bool>) {
+        let scatters = match fate.hit {
+            None => {
+                self.missed.extend(paths.clone());
+                false
+            }
+            Some((shape, scatter)) => {
+                self.by_shape[shape as usize].extend(paths.clone());
+                self.by_scatter[scatter as usize].extend(paths.clone());
+                scatter != Scatter::Nothing
+            }
         };
+        alive.resize(alive.len() + paths.len(), scatters);
+        if fate.emits {
+            self.at_emitters.extend(paths);
+        }
+    }
+}
+
+/// What path i hit; writes its material and colour down.
+#[inline(always)]
+fn look(scene: &FlatScene, hits: &Hits, surfaces: &mut Surfaces, i: usize) -> Fate {
+    if hits.prim[i] == Hits::NONE {
+        let (hit, emits) = (None, false);
+        return Fate { hit, emits };
+    }
+    let shape = Shape::of(hits, i);
+    let id = material(scene, hits, i, shape);
+    let material = &scene.materials[id as usize];
+    surfaces.material[i] = id;
+    let color = match material.color {
+        ColorSource::Constant(color) if material.scatter != Scatter::Nothing => color,
+        _ => [0.0; 3],
+    };
+    for (array, x) in surfaces.color.iter_mut().zip(color) {
+        array[i] = x;
+    }
+    let [r, g, b] = material.emission;
+    Fate {
+        hit: Some((shape, material.scatter)),
+        emits: (r > 0.0) | (g > 0.0) | (b > 0.0),
     }
 }
 

@@ -261,10 +261,7 @@ fn sample_light<L: BitLanes>(
         weight = mis_weight(light.pdf, share * cos * per_pi);
     }
     if light.punctual != 0 {
-        let mut extended = [0.0; WIDEST];
-        (0..L::N).for_each(|i| extended[i] = (!light.punctual >> i & 1) as f32);
-        let extended = L::splat(0.0).lt(L::load(&extended));
-        weight = L::select(extended, weight, L::splat(1.0));
+        weight = L::select(L::mask(light.punctual), L::splat(1.0), weight);
     }
     let throughput: V3<L> = chunk.vector(&columns.throughput);
     let radiance = throughput * f_pi * light.radiance * (per_pi * cos * weight / light.pdf);
@@ -355,8 +352,12 @@ fn follow<L: BitLanes>(c: &mut Columns, chunk: &Chunk, local: &Local<L>, s: &Sca
     chunk.put(s.pdf, c.pdf);
     let eta2 = chunk.lanes::<L>(c.eta2) * s.eta2;
     chunk.put(eta2, c.eta2);
-    for (lane, &i) in chunk.index().iter().enumerate() {
-        c.alive[i as usize] = alive >> lane & 1 == 1;
+    // They are alive so far, all of them.
+    let members = chunk.members();
+    if alive & members != members {
+        for (lane, &i) in chunk.index().iter().enumerate() {
+            c.alive[i as usize] = alive >> lane & 1 == 1;
+        }
     }
 }
 

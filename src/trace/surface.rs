@@ -11,7 +11,7 @@ use super::vector::{V3, get, set};
 use super::wave::{Surfaces, Wave};
 use super::{Hits, Rays, spawn};
 use crate::flat::{ColorSource, FlatScene, Geometry, Scatter, Spheres};
-use crate::math::lanes::{BitLanes, WideLanes};
+use crate::math::lanes::BitLanes;
 use crate::math::{Vec3, acos, atan2};
 
 /// A point of a surface in each lane, but for what is looked up lane by lane.
@@ -214,21 +214,17 @@ fn on_spheres<L: BitLanes>(
     hits: &Hits,
     chunk: &Chunk,
 ) -> Points<L> {
-    let (mut numbers, mut sides) = ([[0.0; WIDEST]; 4], [0.0; WIDEST]);
+    let (mut index, mut inverted) = ([0; WIDEST], 0);
     for lane in 0..L::N {
-        let s = (chunk.at(&hits.prim, lane) & !Spheres::TAG) as usize;
-        let [x, y, z] = spheres.center[s];
-        for (array, x) in numbers.iter_mut().zip([x, y, z, spheres.radius[s]]) {
-            array[lane] = x;
-        }
-        sides[lane] = if spheres.inverted[s] { -1.0 } else { 1.0 };
+        index[lane] = chunk.at(&hits.prim, lane) & !Spheres::TAG;
+        inverted |= u32::from(spheres.inverted[index[lane] as usize]) << lane;
     }
-    let [x, y, z, radius] = &numbers;
-    let center = [L::Wide::load(x), L::Wide::load(y), L::Wide::load(z)];
-    let radius = L::Wide::load(radius);
+    let [x, y, z, radius] = L::rows(&spheres.placed, &index);
+    let center = [x, y, z];
     let ray = [chunk.vector(&rays.origin).0, chunk.vector(&rays.dir).0];
     let (position, outward) = spawn::lanes::sphere_point(ray, chunk.lanes(&hits.t), center, radius);
-    let ng = V3(outward) * L::load(&sides);
+    let outward = V3(outward);
+    let ng = V3::select(L::mask(inverted), -outward, outward);
     Points {
         position: V3(position),
         ng,

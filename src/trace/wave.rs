@@ -29,8 +29,6 @@ pub(super) struct Paths {
     pub(super) key: Vec<u32>,
     /// Its sample index.
     pub(super) sample: Vec<u32>,
-    /// Which paths [`Paths::compact`] keeps, as bits.
-    kept: Vec<u32>,
 }
 
 /// What the surface stage finds; entry i belongs to path i, and is meaningless where the path hit nothing or where there
@@ -147,51 +145,50 @@ impl Paths {
     /// Keeps the paths that `alive` says, in order.
     #[inline(always)]
     pub(super) fn compact<L: BitLanes>(&mut self, alive: &[bool]) {
-        self.kept.clear();
-        for alive in alive.chunks(L::N) {
-            let bits = (0..alive.len()).fold(0, |bits, i| bits | u32::from(alive[i]) << i);
-            self.kept.push(bits);
+        let n = self.len();
+        let [ox, oy, oz] = &mut self.rays.origin;
+        let [dx, dy, dz] = &mut self.rays.dir;
+        let [r, g, b] = &mut self.throughput;
+        let (pdf, eta2) = (&mut self.pdf, &mut self.eta2);
+        let mut floats = [ox, oy, oz, dx, dy, dz, r, g, b, pdf, eta2];
+        let mut words = [&mut self.slot, &mut self.key, &mut self.sample];
+        let (whole, mut to) = (n - n % L::N, 0);
+        for at in (0..whole).step_by(L::N) {
+            let kept = members::<L>(&alive[at..]);
+            let count = kept.count_ones() as usize;
+            if to < at || count < L::N {
+                for array in &mut floats {
+                    L::load(&array[at..]).pack(kept, &mut array[to..]);
+                }
+                for array in &mut words {
+                    <L::Bits as Words>::load(&array[at..]).pack(kept, &mut array[to..]);
+                }
+            }
+            to += count;
         }
-        let floats = self.rays.origin.iter_mut().chain(&mut self.rays.dir);
-        let floats = floats.chain(&mut self.throughput);
-        for array in floats.chain([&mut self.rays.t_max, &mut self.pdf, &mut self.eta2]) {
-            keep(array, &self.kept, L::N, |array, at, chosen, to| {
-                L::load(&array[at..]).pack(chosen, &mut array[to..]);
-            });
+        for at in (whole..n).filter(|&at| alive[at]) {
+            floats.iter_mut().for_each(|array| array[to] = array[at]);
+            words.iter_mut().for_each(|array| array[to] = array[at]);
+            to += 1;
         }
-        for array in [&mut self.slot, &mut self.key, &mut self.sample] {
-            keep(array, &self.kept, L::N, |array, at, chosen, to| {
-                <L::Bits as Words>::load(&array[at..]).pack(chosen, &mut array[to..]);
-            });
-        }
+        floats.into_iter().for_each(|array| array.truncate(to));
+        words.into_iter().for_each(|array| array.truncate(to));
+        // All are alike: no path has an end.
+        self.rays.t_max.truncate(to);
     }
 }
 
-/// Keeps the elements whose bits are set, `n` to a word. `pack` writes those of `n` elements to an earlier place, or where
-/// they are.
+/// Bit i: element i, as many as there are lanes.
 #[inline(always)]
-fn keep<T: Copy>(
-    array: &mut Vec<T>,
-    kept: &[u32],
-    n: usize,
-    pack: impl Fn(&mut [T], usize, u32, usize),
-) {
-    let mut to = 0;
-    for (chunk, &chosen) in kept.iter().enumerate() {
-        let at = chunk * n;
-        if at + n <= array.len() {
-            if to < at || chosen.count_ones() < n as u32 {
-                pack(array, at, chosen, to);
-            }
-            to += chosen.count_ones() as usize;
-            continue;
+fn members<L: BitLanes>(alive: &[bool]) -> u32 {
+    match alive {
+        // Byte i, which is 0 or 1, times 2^(56 − 7 i) is bit 56 + i; no two products meet.
+        &[a, b, c, d, e, f, g, h, ..] if L::N == 8 => {
+            let bytes = u64::from_le_bytes([a, b, c, d, e, f, g, h].map(u8::from));
+            (bytes.wrapping_mul(0x0102_0408_1020_4080) >> 56) as u32
         }
-        for i in (at..array.len()).filter(|i| chosen >> (i - at) & 1 == 1) {
-            array[to] = array[i];
-            to += 1;
-        }
+        _ => (0..L::N).fold(0, |bits, i| bits | u32::from(alive[i]) << i),
     }
-    array.truncate(to);
 }
 
 impl Surfaces {

@@ -76,45 +76,48 @@ fn frames_of_truth() -> Vec<Vec<f64>> {
     TRUTH.get_or_init(many).clone()
 }
 
-/// How the noise of a pixel goes with that of the pixel (dx, dy) away in the next frame: −1 to 1.
-fn correlation(noise: &[Vec<f64>], dx: usize, dy: usize) -> f64 {
-    let (mut product, mut square) = (0.0, 0.0);
+/// How the noise of a pixel goes with that of the pixel (dx, dy) away in the next frame, −1 to 1, and the standard deviation
+/// of that if they are independent: products of mean 0, of which the largest few may be most.
+fn correlation(noise: &[Vec<f64>], dx: usize, dy: usize) -> (f64, f64) {
+    let (mut product, mut squares, mut square) = (0.0, 0.0, 0.0);
     for (now, next) in noise.iter().zip(&noise[1..]) {
         for y in 0..SIDE - dy {
             for x in 0..SIDE - dx {
                 let (a, b) = (now[y * SIDE + x], next[(y + dy) * SIDE + x + dx]);
                 product += a * b;
+                squares += a * a * b * b;
                 square += 0.5 * (a * a + b * b);
             }
         }
     }
-    product / square
+    (product / square, f64::sqrt(squares) / square)
 }
 
 #[test]
 fn noise_of_frames_is_independent_unless_it_is_fixed() {
-    // Products of independent numbers: five standard deviations of their mean. A quarter of the pixels has no noise.
-    let bound = 5.0 / (f64::from(FRAMES - 1) * 0.75 * (SIDE * SIDE) as f64).sqrt();
     let own = noise(&frames(|_| ()));
     for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1), (2, 0), (0, 2)] {
-        let found = correlation(&own, dx, dy);
+        let (found, deviation) = correlation(&own, dx, dy);
         assert!(
-            found.abs() < bound,
-            "{dx}, {dy}: {found:.4}, more than {bound:.4}"
+            found.abs() < 5.0 * deviation,
+            "{dx}, {dy}: {found:.4}, of {deviation:.4}"
         );
     }
     let independent = noise(&frames(|s| {
         s.trace.sampler = luxel::trace::Sampler::Independent
     }));
-    let found = correlation(&independent, 0, 0);
-    assert!(found.abs() < bound, "independent: {found:.4}");
+    let (found, deviation) = correlation(&independent, 0, 0);
+    assert!(
+        found.abs() < 5.0 * deviation,
+        "independent: {found:.4}, of {deviation:.4}"
+    );
 
     let fixed = frames(|s| s.fixed_noise = true);
     assert!(
         fixed.windows(2).all(|two| two[0] == two[1]),
         "the same pixels in every frame"
     );
-    let found = correlation(&noise(&fixed), 0, 0);
+    let (found, _) = correlation(&noise(&fixed), 0, 0);
     assert!(
         (found - 1.0).abs() < 1e-12,
         "the measure sees what is fixed: {found}"

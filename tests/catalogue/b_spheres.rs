@@ -224,8 +224,8 @@ fn b5_leaving(trials: u64) -> Outcome {
 fn far_sides(scene: &FlatScene, rays: &Rays, rng: &mut Rng) -> (usize, usize, f64) {
     let hits = best(scene, rays);
     let (center, radius) = (
-        DVec3::from(scene.spheres.center[0]),
-        scene.spheres.radius[0],
+        DVec3::from(scene.spheres.center(0)),
+        scene.spheres.radius(0),
     );
     let mut inward = Rays::default();
     for i in 0..rays.len() {

@@ -52,7 +52,7 @@ pub fn surface(scene: &FlatScene, rays: &Rays, hits: &Hits, i: usize) -> ([f32; 
     let [u, v] = [hits.u[i], hits.v[i]];
     if prim & Spheres::TAG != 0 {
         let s = (prim & !Spheres::TAG) as usize;
-        let (center, radius) = (scene.spheres.center[s], scene.spheres.radius[s]);
+        let (center, radius) = (scene.spheres.center(s), scene.spheres.radius(s));
         sphere_point(ray(rays, i), hits.t[i], center, radius)
     } else if instance == Hits::WORLD {
         let vertices = triangle_vertices(&scene.world.triangles, prim);

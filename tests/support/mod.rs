@@ -152,8 +152,7 @@ impl Parts {
             spheres: Spheres {
                 looped: sphere_blocks(&looped),
                 blocks: built.sphere_blocks,
-                center: all.iter().map(|s| s.center).collect(),
-                radius: all.iter().map(|s| s.radius).collect(),
+                placed: all.iter().map(SphereItem::placed).collect(),
                 ..Spheres::default()
             },
             ..empty_scene()

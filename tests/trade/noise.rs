@@ -2,6 +2,7 @@
 
 use crate::stage::{Ask, Stage};
 use crate::truth::Truth;
+use luxel::film::Film;
 
 /// Most that the error may be off the one asked for, as a share of it.
 const OFF: f64 = 0.10;
@@ -19,7 +20,8 @@ fn within(stage: &Stage, wanted: f64, seeds: u64) -> u64 {
     let ratios: Vec<f64> = (0..truth.films.len())
         .map(|i| truth.actual(i) / wanted)
         .collect();
-    let spp: Vec<u32> = truth.films.iter().map(|f| f.planes().count[0]).collect();
+    let mean = |film: &Film| film.total_samples() / film.pixels() as u64;
+    let spp: Vec<u64> = truth.films.iter().map(mean).collect();
     println!(
         "{} to {wanted}: {spp:?} spp, actual / asked {ratios:.3?}",
         stage.name
@@ -62,38 +64,73 @@ fn of_a_hundred_renders_ninety_five_are_as_wrong_as_asked() {
     assert!(good * 100 >= 95 * SEEDS * asked.len() as u64);
 }
 
+/// Where samples go where the error is, an error takes fewer of them than where all pixels have the same number: the gain is
+/// printed.
+#[test]
+#[ignore = "long: minutes; cargo test --release --test trade where_the_error_is -- --ignored --nocapture"]
+fn samples_that_go_where_the_error_is_are_fewer() {
+    let asked = [
+        ("diffuse_room", 0.05),
+        ("cat_room", 0.06),
+        ("hero", 0.06),
+        ("lights", 0.1),
+        ("materials", 0.08),
+        ("sky", 0.03),
+    ];
+    for (name, wanted) in asked {
+        let stage = Stage::shipped(name, 128);
+        let cost = |adaptive| {
+            let ask = Ask {
+                noise: Some(wanted),
+                adaptive,
+                ..Ask::new(1 << 14, 3)
+            };
+            let stats = stage.render(ask).stats;
+            f64::from(stats.spp + stats.pilot)
+        };
+        let gain = cost(false) / cost(true);
+        println!("{name} to {wanted}: {gain:.2} times fewer samples, pilots included");
+        assert!(gain > 1.0, "{name}: {gain}");
+    }
+}
+
 #[test]
 fn neither_threads_nor_tiles_choose_the_number_of_samples() {
     let stage = Stage::shipped("lens", 40);
-    let render = |tile, threads| {
+    let render = |adaptive, tile, threads| {
         let ask = Ask {
             noise: Some(0.15),
+            adaptive,
             tile,
             threads,
             ..Ask::new(MOST, 5)
         };
         stage.render(ask)
     };
-    let one = render(64, 1);
-    assert!(
-        one.stats.spp > 4 && one.stats.pilot >= 16,
-        "{:?}",
-        one.stats
-    );
-    for (tile, threads) in [(7, 1), (16, 3)] {
-        let other = render(tile, threads);
-        assert_eq!(other.stats.spp, one.stats.spp);
-        assert_eq!(other.film.planes(), one.film.planes());
-        assert_eq!(other.film.error(), one.film.error());
+    for adaptive in [true, false] {
+        let one = render(adaptive, 64, 1);
+        assert!(
+            one.stats.spp > 4 && one.stats.pilot >= 16,
+            "{:?}",
+            one.stats
+        );
+        for (tile, threads) in [(7, 1), (16, 3)] {
+            let other = render(adaptive, tile, threads);
+            assert_eq!(other.stats.spp, one.stats.spp);
+            assert_eq!(other.stats.cells, one.stats.cells);
+            assert_eq!(other.film.planes(), one.film.planes());
+            assert_eq!(other.film.error(), one.film.error());
+        }
     }
     // The same bits as when that number is asked for.
+    let one = render(false, 64, 1);
     let plain = stage.render(Ask::new(one.stats.spp, 5));
     assert_eq!(plain.film.planes(), one.film.planes());
     let but_error = |rendering: &luxel::render::Rendering| {
         let all = rendering
             .metadata
             .entries()
-            .filter(|(key, _)| *key != "error");
+            .filter(|(key, _)| !["error", "adaptive"].contains(key));
         all.map(|(key, value)| format!("{key}: {value}"))
             .collect::<Vec<_>>()
     };

@@ -20,6 +20,7 @@ pub(crate) struct Stage {
 pub(crate) struct Ask {
     pub(crate) spp: u32,
     pub(crate) noise: Option<f64>,
+    pub(crate) adaptive: bool,
     pub(crate) seed: u64,
     pub(crate) sampler: Sampler,
     pub(crate) tile: u32,
@@ -31,6 +32,7 @@ impl Ask {
         Ask {
             spp,
             noise: None,
+            adaptive: true,
             seed,
             sampler: Sampler::Sobol,
             tile: 16,
@@ -115,6 +117,7 @@ impl Stage {
             size: self.size,
             spp: ask.spp,
             noise: ask.noise,
+            adaptive: ask.adaptive,
             threads: Some(ask.threads),
             tile: ask.tile,
             trace: TraceOptions {

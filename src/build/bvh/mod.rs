@@ -72,6 +72,15 @@ pub struct SphereItem {
     pub prim: u32,
 }
 
+impl SphereItem {
+    /// Its row of [`crate::flat::Spheres::placed`].
+    #[must_use]
+    pub fn placed(&self) -> [f64; 4] {
+        let [x, y, z] = self.center;
+        [x, y, z, self.radius]
+    }
+}
+
 /// What a tree is built over; all in one space.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Primitives<'a> {

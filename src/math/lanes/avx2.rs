@@ -179,6 +179,20 @@ impl Lanes for F32x8 {
             )
         }
     }
+    /// Rows as registers, four at a time, transposed: what is stored number by number and loaded as a register waits for
+    /// all the stores.
+    #[inline(always)]
+    fn rows(from: &[[f64; 4]], index: &[u32]) -> [F64x8; 4] {
+        let index = &index[..8];
+        // SAFETY: the machine has AVX, see the module; a row has four elements.
+        let row = |i: usize| unsafe { _mm256_loadu_pd(from[index[i] as usize].as_ptr()) };
+        // SAFETY: likewise.
+        unsafe {
+            let [a, b, c, d] = transposed([row(0), row(1), row(2), row(3)]);
+            let [e, f, g, h] = transposed([row(4), row(5), row(6), row(7)]);
+            [F64x8(a, e), F64x8(b, f), F64x8(c, g), F64x8(d, h)]
+        }
+    }
     #[inline(always)]
     fn sort_falling(
         keys: &[f32; 8],
@@ -286,6 +300,23 @@ impl WideLanes for F64x8 {
             let high = _mm256_cmp_pd::<_CMP_GE_OQ>(self.1, zero);
             _mm256_movemask_pd(_mm256_or_pd(low, high)) != 0
         }
+    }
+}
+
+/// # Safety
+/// The machine has AVX.
+#[inline(always)]
+unsafe fn transposed([a, b, c, d]: [__m256d; 4]) -> [__m256d; 4] {
+    // SAFETY: the caller's.
+    unsafe {
+        let (ab_even, ab_odd) = (_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
+        let (cd_even, cd_odd) = (_mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d));
+        [
+            _mm256_permute2f128_pd::<0x20>(ab_even, cd_even),
+            _mm256_permute2f128_pd::<0x20>(ab_odd, cd_odd),
+            _mm256_permute2f128_pd::<0x31>(ab_even, cd_even),
+            _mm256_permute2f128_pd::<0x31>(ab_odd, cd_odd),
+        ]
     }
 }
 

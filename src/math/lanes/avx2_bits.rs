@@ -64,6 +64,15 @@ impl BitLanes for F32x8 {
         }
     }
     #[inline(always)]
+    fn mask(bits: u32) -> Mask8 {
+        // SAFETY: likewise.
+        unsafe {
+            let each = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+            let set = _mm256_and_si256(_mm256_set1_epi32(bits as i32), each);
+            Mask8(_mm256_castsi256_ps(_mm256_cmpeq_epi32(set, each)))
+        }
+    }
+    #[inline(always)]
     fn pack(self, chosen: u32, to: &mut [f32]) {
         let to = &mut to[..8];
         // SAFETY: likewise; eight elements are there.

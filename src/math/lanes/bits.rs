@@ -62,6 +62,15 @@ pub(crate) trait BitLanes: Lanes {
     fn wide_lt(a: Self::Wide, b: Self::Wide) -> Self::Mask;
     /// The elements at `index`, as many as there are lanes.
     fn gather(from: &[f32], index: &[u32]) -> Self;
+    /// Set where bit i is, in lane i.
+    #[inline(always)]
+    fn mask(bits: u32) -> Self::Mask {
+        let mut lanes = [0.0; super::MOST];
+        for (lane, x) in lanes[..Self::N].iter_mut().enumerate() {
+            *x = (bits >> lane & 1) as f32;
+        }
+        Self::splat(0.0).lt(Self::load(&lanes))
+    }
     /// As [`Words::pack`].
     #[inline(always)]
     fn pack(self, chosen: u32, to: &mut [f32]) {

@@ -92,6 +92,20 @@ pub(crate) trait Lanes:
     /// Rounded to nearest, ties to even.
     fn narrow(wide: Self::Wide) -> Self;
 
+    /// The rows at `index`, one in each lane: their first elements, their second ones …
+    #[inline(always)]
+    fn rows(from: &[[f64; 4]], index: &[u32]) -> [Self::Wide; 4] {
+        let mut columns = [[0.0; MOST]; 4];
+        for (lane, &i) in index[..Self::N].iter().enumerate() {
+            for (column, x) in columns.iter_mut().zip(from[i as usize]) {
+                column[lane] = x;
+            }
+        }
+        let [a, b, c, d] = &columns;
+        let wide = |column: &[f64; MOST]| Self::Wide::load(column);
+        [wide(a), wide(b), wide(c), wide(d)]
+    }
+
     /// Writes the elements of `items` whose bits are set in `chosen` to the front of `out`, by falling `keys`, and lower
     /// bounds of their keys, at most seven units in the last place away, to the front of `bounds`; returns their number.
     /// What follows in both is overwritten with anything. Keys that are chosen are not negative, the others are.

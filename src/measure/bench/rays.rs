@@ -155,8 +155,8 @@ fn starts(scene: &FlatScene, rays: &Rays, hits: &Hits) -> Vec<Start> {
         let prim = hits.prim[i];
         let (point, normal) = if prim & Spheres::TAG != 0 {
             let sphere = (prim & !Spheres::TAG) as usize;
-            let (centers, radii) = (&scene.spheres.center, &scene.spheres.radius);
-            sphere_point(ray, hits.t[i], centers[sphere], radii[sphere])
+            let (center, radius) = (scene.spheres.center(sphere), scene.spheres.radius(sphere));
+            sphere_point(ray, hits.t[i], center, radius)
         } else {
             let vertices = triangle_vertices(&scene.world.triangles, prim);
             let point = triangle_point(vertices, hits.u[i], hits.v[i]);

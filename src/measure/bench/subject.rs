@@ -184,8 +184,7 @@ impl Subject {
             instance_materials: Vec::new(),
             spheres: Spheres {
                 blocks: built.sphere_blocks,
-                center: self.spheres.iter().map(|s| s.center).collect(),
-                radius: self.spheres.iter().map(|s| s.radius).collect(),
+                placed: self.spheres.iter().map(SphereItem::placed).collect(),
                 ..Spheres::default()
             },
             materials: Vec::new(),

@@ -93,7 +93,7 @@ struct Traced {
 impl Probe<'_> {
     /// Everything that has a surface; entities take turns, whatever their size.
     fn shapes(&self) -> Vec<Shape> {
-        let spheres = (0..self.scene.spheres.radius.len() as u32).map(Shape::Sphere);
+        let spheres = (0..self.scene.spheres.placed.len() as u32).map(Shape::Sphere);
         let instances = (0..).zip(&self.scene.instances).map(|(i, instance)| {
             let prims = self.topology.local[instance.geometry as usize].part.len();
             Shape::Triangles(i, 0..prims as u32)
@@ -234,8 +234,8 @@ impl Probe<'_> {
         for k in 0..count {
             let (target, size) = match shapes[k % shapes.len()].clone() {
                 Shape::Sphere(s) => {
-                    let (c, r) = (&self.scene.spheres.center, &self.scene.spheres.radius);
-                    let (c, r) = (DVec3::from(c[s as usize]), r[s as usize]);
+                    let (spheres, s) = (&self.scene.spheres, s as usize);
+                    let (c, r) = (DVec3::from(spheres.center(s)), spheres.radius(s));
                     (c + self.random.direction() * r, r)
                 }
                 Shape::Triangles(instance, prims) => {
@@ -321,8 +321,8 @@ impl Probe<'_> {
     fn leaves_sphere(&self, s: usize, err: f32, to: &Traced, k: usize) -> bool {
         let spheres = &self.scene.spheres;
         let (center, most) = (
-            DVec3::from(spheres.center[s]),
-            spheres.radius[s] + f64::from(BOUNDS * err),
+            DVec3::from(spheres.center(s)),
+            spheres.radius(s) + f64::from(BOUNDS * err),
         );
         self.met(to, k)
             .is_none_or(|p| (p.as_dvec3() - center).length() > most)

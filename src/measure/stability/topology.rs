@@ -55,7 +55,7 @@ impl Topology {
 
     /// Edges, closed parts and open ones of the whole scene, spheres among the closed.
     pub(super) fn count(&self, scene: &FlatScene) -> [usize; 3] {
-        let mut sum = [0, scene.spheres.radius.len(), 0];
+        let mut sum = [0, scene.spheres.placed.len(), 0];
         let placed = scene
             .instances
             .iter()

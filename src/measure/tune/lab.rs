@@ -75,7 +75,7 @@ impl<'a> Lab<'a> {
             .chain([&scene.world.shading])
             .map(|shading| shading.material.len())
             .sum();
-        (scene.needs, triangles + scene.spheres.radius.len())
+        (scene.needs, triangles + scene.spheres.placed.len())
     }
 
     /// Index of a build; made if there is none yet, as a first frame's.

@@ -110,27 +110,21 @@ fn looped_errors<L: Lanes>(
 ) -> L {
     let mut ids = [0.0; MOST_LANES];
     prim.store(&mut ids);
-    let mut center = [[0.0; MOST_LANES]; 3];
-    let mut radius = [1.0; MOST_LANES];
-    let lanes = if out.len() < L::N { out.len() } else { L::N };
-    for lane in 0..lanes {
-        let id = ids[lane].to_bits();
-        out[lane] = id;
-        if id != Hits::NONE {
-            let i = (id & !Spheres::TAG) as usize;
-            let c = spheres.center[i];
-            center[0][lane] = c[0] as f32;
-            center[1][lane] = c[1] as f32;
-            center[2][lane] = c[2] as f32;
-            radius[lane] = spheres.radius[i] as f32;
+    let mut index = [0; MOST_LANES];
+    for (lane, id) in ids.iter().map(|id| id.to_bits()).enumerate().take(L::N) {
+        if let Some(out) = out.get_mut(lane) {
+            *out = id;
         }
+        // What hit nothing is given any sphere's: nobody asks for its error.
+        index[lane] = if id == Hits::NONE {
+            0
+        } else {
+            id & !Spheres::TAG
+        };
     }
-    let center = [
-        L::load(&center[0]),
-        L::load(&center[1]),
-        L::load(&center[2]),
-    ];
-    bound::sphere_error([origin, dir], t, center, L::load(&radius))
+    let [x, y, z, radius] = L::rows(&spheres.placed, &index);
+    let center = [L::narrow(x), L::narrow(y), L::narrow(z)];
+    bound::sphere_error([origin, dir], t, center, L::narrow(radius))
 }
 
 /// Whether any looped sphere is hit below `t_max`.

@@ -62,9 +62,9 @@ pub(super) fn hit_error(scene: &FlatScene, ray: [[f32; 3]; 2], hit: &Best) -> (f
     let weights = [hit.u, hit.v];
     if hit.prim & Spheres::TAG != 0 {
         let i = (hit.prim & !Spheres::TAG) as usize;
-        let [x, y, z] = scene.spheres.center[i];
+        let [x, y, z] = scene.spheres.center(i);
         let center = [x as f32, y as f32, z as f32];
-        let err = sphere_error(ray, hit.t, center, scene.spheres.radius[i] as f32);
+        let err = sphere_error(ray, hit.t, center, scene.spheres.radius(i) as f32);
         return (err, weights);
     }
     let instance = &scene.instances[hit.instance as usize];

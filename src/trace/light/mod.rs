@@ -52,7 +52,7 @@ pub(super) fn sample_lights<L: BitLanes>(
 ) -> LightSample<L> {
     let lights = &scene.lights;
     if let ([sphere], 1) = (lights.spheres.as_slice(), lights.len()) {
-        return sample_spheres(scene, from, &Chosen::one(scene, *sphere), u);
+        return sample_spheres(from, &Chosen::one(scene, *sphere), u);
     }
     let mut chosen = [0; WIDEST];
     if lights.len() > 1 {
@@ -66,7 +66,7 @@ pub(super) fn sample_lights<L: BitLanes>(
         for lane in &mut chosen {
             *lane = lights.spheres[*lane as usize];
         }
-        return sample_spheres(scene, from, &Chosen::each(scene, &chosen), u);
+        return sample_spheres(from, &Chosen::each(scene, &chosen), u);
     }
     let mut numbers = [[0.0; WIDEST]; 5];
     for (lanes, array) in from.0.into_iter().chain(u).zip(&mut numbers) {
@@ -131,7 +131,7 @@ fn sample_light(
     let lights = &scene.lights;
     let total = lights.total();
     if let Some(&sphere) = lights.spheres.get(chosen) {
-        let sample = sample_spheres(scene, V3::from(from), &Chosen::one(scene, sphere), u);
+        let sample = sample_spheres(V3::from(from), &Chosen::one(scene, sphere), u);
         return (sample.valid != 0).then_some(sample);
     }
     let (i, triangles) = (chosen - lights.spheres.len(), &lights.triangles);
