@@ -68,6 +68,11 @@ impl ErrorBar {
         ratio(variance, self.mean_square)
     }
 
+    /// Shares of the pixels that have equally many samples, with how their variances fall.
+    pub(super) fn decays(&self) -> &[(f64, Decay)] {
+        &self.decays
+    }
+
     /// What `relative` is relative to, squared: the mean over pixels of their squared radiance.
     pub(super) fn mean_square(&self) -> f64 {
         self.mean_square
@@ -98,8 +103,8 @@ fn ratio(variance: f64, mean_square: f64) -> f64 {
 
 /// Sums over some pixels.
 #[derive(Clone, Debug)]
-struct Sums {
-    pixels: f64,
+pub(super) struct Sums {
+    pub(super) pixels: f64,
     /// Of squared means.
     square: f64,
     /// Of each level's squared half-differences; of independent samples, their variance alone.
@@ -107,7 +112,7 @@ struct Sums {
 }
 
 impl Sums {
-    fn zero(levels: usize) -> Sums {
+    pub(super) fn zero(levels: usize) -> Sums {
         Sums {
             pixels: 0.0,
             square: 0.0,
@@ -159,18 +164,9 @@ impl Film {
         for i in 0..self.pixels() {
             let class = &mut classes[usize::from(of_pixel[i])];
             let group = &mut class.groups[group_of(i)];
-            group.pixels += 1.0;
             let mean = self.mean(i);
             group.square += mean_of(mean.map(|m| m * m));
-            match class.levels.is_empty() {
-                true => group.levels[0] += mean_of(self.scatter(i)),
-                false => {
-                    for (sum, &k) in group.levels.iter_mut().zip(&class.levels) {
-                        let gain = self.planes().gains[k as usize][i];
-                        *sum += mean_of(gain.map(f64::from));
-                    }
-                }
-            }
+            self.add_levels(group, &class.levels, i);
         }
         let pixels = self.pixels() as f64;
         let (mut square, mut variance) = (0.0, 0.0);
@@ -197,6 +193,18 @@ impl Film {
             decays,
             mean_square,
         })
+    }
+
+    /// Adds what a pixel says of the levels, or of independent samples.
+    pub(super) fn add_levels(&self, sums: &mut Sums, levels: &[u32], i: usize) {
+        sums.pixels += 1.0;
+        if levels.is_empty() {
+            sums.levels[0] += mean_of(self.scatter(i));
+        }
+        for (sum, &k) in sums.levels.iter_mut().zip(levels) {
+            let gain = self.planes().gains[k as usize][i];
+            *sum += mean_of(gain.map(f64::from));
+        }
     }
 
     /// Sorts pixels by their samples, those that were left out included; `None` if one has fewer than two.
@@ -292,18 +300,6 @@ impl Film {
         (fragile / sum, 2.0 * square / (sum * sum))
     }
 
-    /// The variance of each pixel's mean, and how that falls in all of them; `None` if pixels have not equally many
-    /// samples.
-    pub(super) fn pixel_variances(&self) -> Option<(Vec<f64>, Decay)> {
-        let bar = self.error()?;
-        let [(_, decay)] = bar.decays.as_slice() else {
-            return None;
-        };
-        let scale = Scale::new(decay, &self.seen_levels(), self.samples());
-        let variances = (0..self.pixels()).map(|i| mean_of(scale.variance(self, i)));
-        Some((variances.collect(), decay.clone()))
-    }
-
     fn count_of(&self, i: usize) -> u32 {
         self.planes().count[i]
     }
@@ -378,7 +374,7 @@ impl Film {
 }
 
 /// From the differences of a pixel's blocks to the variance of its mean.
-struct Scale {
+pub(super) struct Scale {
     /// (level, by what its mean squared half-difference is multiplied); none if samples are independent.
     factors: Vec<(u32, f64)>,
     /// Samples.
@@ -389,7 +385,7 @@ struct Scale {
 
 impl Scale {
     /// Every level by itself, times its ratio in the whole image, estimates the variance; their pairs are their weights.
-    fn new(decay: &Decay, levels: &[u32], n: u32) -> Scale {
+    pub(super) fn new(decay: &Decay, levels: &[u32], n: u32) -> Scale {
         let variance = decay.variance(n);
         let pairs = |k: u32| f64::from(Blocks::pairs(n, k).max(1));
         let all: f64 = levels.iter().map(|&k| pairs(k)).sum();
@@ -404,7 +400,7 @@ impl Scale {
         }
     }
 
-    fn variance(&self, film: &Film, i: usize) -> [f64; 3] {
+    pub(super) fn variance(&self, film: &Film, i: usize) -> [f64; 3] {
         if self.factors.is_empty() {
             return film.scatter(i).map(|scatter| scatter / f64::from(self.n));
         }
@@ -425,7 +421,7 @@ fn group_of(pixel: usize) -> usize {
     ((pixel as u32).wrapping_mul(2_654_435_761) >> 16) as usize % GROUPS
 }
 
-fn decay_of(levels: &[u32], sums: &Sums) -> Option<Decay> {
+pub(super) fn decay_of(levels: &[u32], sums: &Sums) -> Option<Decay> {
     let means = sums.levels.iter().map(|sum| sum / sums.pixels);
     match levels.is_empty() {
         true => Some(Decay::of_independent(means.sum())),
@@ -458,6 +454,6 @@ fn jackknife(classes: &[Class], decays: &[(f64, Decay)], variance: f64) -> f64 {
     (count - 1.0) / count * squares / (variance * variance)
 }
 
-fn mean_of(rgb: [f64; 3]) -> f64 {
+pub(super) fn mean_of(rgb: [f64; 3]) -> f64 {
     (rgb[0] + rgb[1] + rgb[2]) / 3.0
 }

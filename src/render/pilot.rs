@@ -10,7 +10,7 @@ use crate::film::Blocks;
 use crate::trace::TraceOptions;
 
 /// Samples of the shortest pilot.
-const SHORTEST: u32 = 16;
+const SHORTEST: u32 = 32;
 
 /// The pilot has at least this part of the samples that it asks for: a rate of convergence can be trusted for so many
 /// doublings, no more.

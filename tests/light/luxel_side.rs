@@ -117,6 +117,7 @@ impl Stage {
             size: desc.render.size,
             spp: desc.render.spp,
             noise: None,
+            adaptive: true,
             time: None,
             threads: Some(1),
             tile: Settings::DEFAULT_TILE,

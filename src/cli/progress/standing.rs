@@ -1,8 +1,8 @@
 //! How things stand, and the lines that say so.
 
+use super::{Finished, How, Work};
 #[cfg(doc)]
 use crate::render::Control;
-use super::{Finished, How, Work};
 use serde_json::{Value, json};
 use std::time::Duration;
 
