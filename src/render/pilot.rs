@@ -17,7 +17,7 @@ const SHORTEST: u32 = 32;
 const PART: u32 = 8;
 
 /// And at least this part of what it asks for in any cell.
-const PART_OF_LONGEST: u32 = 16;
+const PART_OF_LONGEST: u32 = 64;
 
 /// Fewest samples of an image for which the error is asked: fewer say nothing about it.
 const FEWEST: u32 = 4;
