@@ -117,6 +117,16 @@ fn of_part(path: &Path, file: &PartFile) -> Found {
         held.of += pixels * u64::from(end.saturating_sub(entry.first));
         held.done = [held.done[0].min(entry.done), held.done[1].max(entry.done)];
     }
+    // Where cells have numbers of their own, the mean was rounded.
+    let pixels: u64 = file
+        .entries
+        .iter()
+        .map(|entry| u64::from(entry.window.width) * u64::from(entry.window.height))
+        .sum();
+    if header.value("error").is_some() && (held.held + pixels / 2) / pixels.max(1) == u64::from(spp)
+    {
+        held.of = held.held;
+    }
     let image = image_of(path).unwrap_or_else(|| "OUTPUT".into());
     let value = |key| header.value(key);
     let share = match (
@@ -143,11 +153,18 @@ fn of_part(path: &Path, file: &PartFile) -> Found {
 /// The line that renders it, with SCENE for the file, which nobody wrote down.
 fn command(metadata: &Metadata, aovs: &[Aov], output: &str, share: &str) -> String {
     let mut line = "luxel render SCENE".to_owned();
+    // `0.01`, or `0.01 or 500 spp`: what was asked for, in place of the samples that came of it.
+    let error = metadata.value("error");
+    if let Some(error) = error {
+        line += " --noise ";
+        line += &error.replace(" or ", " --spp ").replace(" spp", "");
+    }
     // What stands in a scene is not assumed to be the scene's; defaults of luxel are.
     for (key, flag, default) in [
         ("frame", "--frame", "0"),
         ("size", "--size", ""),
         ("spp", "--spp", ""),
+        ("adaptive", "--adaptive", "on"),
         ("bounces", "--bounces", ""),
         ("seed", "--seed", "0"),
         ("sampler", "--sampler", "sobol"),
@@ -158,6 +175,7 @@ fn command(metadata: &Metadata, aovs: &[Aov], output: &str, share: &str) -> Stri
         ("exposure", "--exposure", "0"),
     ] {
         match metadata.value(key) {
+            Some(_) if key == "spp" && error.is_some() => {}
             Some(value) if value != default => line += &format!(" {flag} {value}"),
             _ => {}
         }

@@ -17,7 +17,14 @@ use std::time::Duration;
 pub(crate) const OWN: &str = "part.";
 
 /// Entries that another line may have otherwise and still go on.
-const FREE: &[&str] = &["spp", "part.exposure", "part.noise", "part.pilot"];
+const FREE: &[&str] = &[
+    "spp",
+    "error",
+    "adaptive",
+    "part.exposure",
+    "part.noise",
+    "part.pilot",
+];
 
 /// Where a render is kept, and what it does of the whole.
 pub(crate) struct Part {
@@ -114,9 +121,8 @@ impl Part {
             }
             renderer.render_onto(frame, control, canvas)
         });
-        let goal = canvas.verdict().map(|verdict| verdict.spp);
-        if goal.is_some_and(|goal| canvas.done().1 > goal) {
-            return Err(self.too_many(canvas.done().1, goal.unwrap_or(0)));
+        if let Some((held, wanted)) = canvas.surplus() {
+            return Err(self.too_many(held, wanted));
         }
         let nothing = canvas.samples() == 0;
         if !nothing {
@@ -158,7 +164,7 @@ impl Part {
     fn save(&self, header: &Metadata, canvas: &Canvas, go_on: impl Fn() -> bool) -> io::Result<()> {
         let mut header = self.header(header, canvas.verdict());
         if self.timed {
-            header.replace("spp", canvas.done().1);
+            header.set("spp", canvas.done().1);
         }
         write_streamed(&self.path, |out| {
             let mut part = PartWriter::begin(out, &header, canvas.len() as u32)?;
@@ -181,7 +187,7 @@ impl Part {
             header.push(key, value);
         }
         if let (Some(noise), Some(verdict)) = (self.noise, verdict) {
-            header.replace("spp", verdict.spp);
+            header.set("spp", verdict.spp);
             header.push("part.noise", noise);
             header.push("part.pilot", verdict.pilot);
         }
@@ -216,7 +222,12 @@ impl Part {
             })?);
         }
         let canvas = Canvas::of_patches(settings.size, &self.share, patches);
-        if let Some(verdict) = self.verdict_of(&file.header) {
+        if !canvas.suits(settings) {
+            return Err(self.refuse(
+                "has other tiles than those that --noise gives their own samples to, which `--adaptive off` does not",
+            ));
+        }
+        if let Some(verdict) = self.verdict_of(&file.header, settings.adaptive) {
             canvas.trust(verdict);
         }
         let (done, most) = canvas.done();
@@ -226,7 +237,7 @@ impl Part {
             return Err(self.too_many(most, end));
         }
         say(
-            &match done < end && canvas.verdict().is_none_or(|v| done < v.spp) {
+            &match done < end && canvas.verdict().is_none_or(|v| canvas.spp() < v.spp) {
                 true => format!(
                     "going on from {}: sample {done} is next",
                     self.path.display()
@@ -238,9 +249,10 @@ impl Part {
     }
 
     /// What the pilot said, if it was asked the same.
-    fn verdict_of(&self, header: &Metadata) -> Option<Verdict> {
+    fn verdict_of(&self, header: &Metadata, adaptive: bool) -> Option<Verdict> {
         let number = |key| header.value(key)?.parse::<u32>().ok();
-        let same = header.value("part.noise")? == self.noise?.to_string();
+        let same = header.value("part.noise")? == self.noise?.to_string()
+            && header.value("adaptive").is_none() == adaptive;
         let (spp, pilot) = (number("spp")?, number("part.pilot")?);
         same.then_some(Verdict { spp, pilot })
     }

@@ -22,10 +22,11 @@ impl Metadata {
         self.entries().find(|(k, _)| *k == key).map(|(_, v)| v)
     }
 
-    /// Puts another value in the place of one that is there.
-    pub fn replace(&mut self, key: &str, value: impl ToString) {
-        if let Some((_, there)) = self.0.iter_mut().find(|(k, _)| k == key) {
-            *there = value.to_string();
+    /// Puts a value in the place of the one that is there, or at the end.
+    pub fn set(&mut self, key: &str, value: impl ToString) {
+        match self.0.iter_mut().find(|(k, _)| k == key) {
+            Some((_, there)) => *there = value.to_string(),
+            None => self.push(key, value),
         }
     }
 

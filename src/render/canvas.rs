@@ -127,8 +127,28 @@ impl Canvas {
         ((samples + pixels / 2) / pixels.max(1)) as u32
     }
 
+    /// Whether tiles are as [`Settings`] need them: those that get samples of their own number have their own size.
+    #[must_use]
+    pub fn suits(&self, settings: &Settings) -> bool {
+        let windows = self.patches().map(|patch| patch.window);
+        !settings.is_adaptive() || windows.eq(cut(settings.size, settings.side()))
+    }
+
+    /// What a tile has and was to have, if one has more than that.
+    #[must_use]
+    pub fn surplus(&self) -> Option<(u32, u32)> {
+        let of_all = self.verdict().map_or(u32::MAX, |verdict| verdict.spp);
+        let limits = self.tiles.iter().map(|tile| {
+            let Tile { patch, goal, .. } = &*lock(tile);
+            let limit = if *goal == u32::MAX { of_all } else { *goal };
+            (patch.done, limit)
+        });
+        limits.into_iter().find(|(done, limit)| done > limit)
+    }
+
     /// The mean over pixels of what they have, rounded.
-    pub(super) fn mean_done(&self) -> u32 {
+    #[must_use]
+    pub fn spp(&self) -> u32 {
         let done: Vec<u32> = self.patches().map(|patch| patch.done).collect();
         self.mean(&done)
     }

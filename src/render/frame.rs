@@ -276,7 +276,7 @@ impl Renderer {
             stopped: control.stopped() && !all,
             spp: match goals.is_empty() {
                 true => complete,
-                false => canvas.mean_done(),
+                false => canvas.spp(),
             },
             cells: goals.iter().min().map(|least| (*least, goal)),
             pilot,

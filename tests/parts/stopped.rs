@@ -174,6 +174,14 @@ fn the_wanted_error_is_reached_with_the_same_samples() {
     folder.expect(&format!("{line} --noise 4%"), 0, &["has all samples"]);
     assert!(folder.bytes("x.exr") == folder.bytes("one.exr"));
     folder.expect(&format!("{line} --noise 20%"), 2, &["more than the"]);
+    let uniform = format!("{line} --noise 4% --adaptive off");
+    folder.expect(
+        &(uniform.clone() + " --overwrite"),
+        0,
+        &["ended by --noise"],
+    );
+    folder.expect(&uniform, 0, &["has all samples"]);
+    folder.expect(&format!("{line} --noise 4%"), 2, &["--adaptive off"]);
     // Each run with a time adds to the part.
     let samples = |folder: &Folder| {
         let said = folder.expect("info t.exr", 0, &[]);

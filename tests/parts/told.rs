@@ -46,6 +46,11 @@ fn the_line_that_is_told_makes_the_same_file() {
             "g.exr.8..16.part",
         ),
         ("--spp 11 --checkpoint 1h -o h.png".to_owned(), "h.png.part"),
+        ("--noise 10% -o j.exr --aov samples".to_owned(), "j.exr"),
+        (
+            "--noise 6% --spp 40 --adaptive off -o k.png".to_owned(),
+            "k.png",
+        ),
     ] {
         folder.expect(&format!("render s.ron {line}"), 0, &[]);
         again(&folder, &other, name);
