@@ -35,20 +35,13 @@ fn frames(settings: impl Fn(&mut Settings)) -> Vec<Vec<f64>> {
     (0..FRAMES).map(&mut green).collect()
 }
 
-/// Each pixel's deviation from the truth, in standard deviations of its own.
+/// Each pixel's deviation from the truth. Not in standard deviations of its own: measured by the same frames, these make those
+/// alike that all miss what is rare.
 fn noise(frames: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let truth = &frames_of_truth()[0];
     let deviation =
         |frame: &Vec<f64>| -> Vec<f64> { frame.iter().zip(truth).map(|(x, r)| x - r).collect() };
-    let off: Vec<Vec<f64>> = frames.iter().map(deviation).collect();
-    let size = |pixel: usize| {
-        let squares = off.iter().map(|frame| frame[pixel] * frame[pixel]);
-        (squares.sum::<f64>() / off.len() as f64).sqrt().max(1e-4)
-    };
-    let sizes: Vec<f64> = (0..SIDE * SIDE).map(size).collect();
-    off.into_iter()
-        .map(|frame| frame.iter().zip(&sizes).map(|(x, s)| x / s).collect())
-        .collect()
+    frames.iter().map(deviation).collect()
 }
 
 fn frames_of_truth() -> Vec<Vec<f64>> {
@@ -56,7 +49,7 @@ fn frames_of_truth() -> Vec<Vec<f64>> {
     let many = || {
         let (desc, spawned) = spawn(STILL);
         let settings = Settings {
-            spp: 1024,
+            spp: 4096,
             trace: luxel::trace::TraceOptions {
                 seed: 99,
                 ..Settings::of_scene(&desc).trace

@@ -159,7 +159,7 @@ fn an_integrating_sphere_is_lit_evenly() {
             height - 1.0
         ));
     let truth = closed::integrating_sphere(share, emission, albedo);
-    by_all_estimators("integrating sphere", &stage, 60, [12288, 2048], truth);
+    by_all_estimators("integrating sphere", &stage, 60, [8192, 3072], truth);
 }
 
 #[test]
