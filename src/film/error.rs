@@ -217,10 +217,10 @@ impl Film {
         let mut numbers: Vec<u32> = Vec::new();
         for i in 0..self.pixels() {
             // Neighbours are alike.
-            if i == 0 || samples(i) != samples(i - 1) {
-                if let Err(at) = numbers.binary_search(&samples(i)) {
-                    numbers.insert(at, samples(i));
-                }
+            if (i == 0 || samples(i) != samples(i - 1))
+                && let Err(at) = numbers.binary_search(&samples(i))
+            {
+                numbers.insert(at, samples(i));
             }
         }
         if *numbers.first()? < 2 || numbers.len() > usize::from(u8::MAX) {
@@ -320,8 +320,7 @@ impl Film {
             .iter()
             .map(|class| Sums::zero(class.levels.len()))
             .collect();
-        for i in 0..self.pixels() {
-            let class = usize::from(of_pixel[i]);
+        for (i, class) in of_pixel.iter().copied().map(usize::from).enumerate() {
             let gains: Vec<f64> = classes[class]
                 .levels
                 .iter()
