@@ -111,20 +111,16 @@ fn of_part(path: &Path, file: &PartFile) -> Found {
         of: 0,
         done: [u32::MAX, 0],
     };
+    let mut all = 0;
     for entry in &file.entries {
         let pixels = u64::from(entry.window.width) * u64::from(entry.window.height);
+        all += pixels;
         held.held += pixels * u64::from(entry.done.saturating_sub(entry.first));
         held.of += pixels * u64::from(end.saturating_sub(entry.first));
         held.done = [held.done[0].min(entry.done), held.done[1].max(entry.done)];
     }
     // Where cells have numbers of their own, the mean was rounded.
-    let pixels: u64 = file
-        .entries
-        .iter()
-        .map(|entry| u64::from(entry.window.width) * u64::from(entry.window.height))
-        .sum();
-    if header.value("error").is_some() && (held.held + pixels / 2) / pixels.max(1) == u64::from(spp)
-    {
+    if header.value("error").is_some() && (held.held + all / 2) / all.max(1) == u64::from(spp) {
         held.of = held.held;
     }
     let image = image_of(path).unwrap_or_else(|| "OUTPUT".into());

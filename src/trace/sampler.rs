@@ -4,7 +4,7 @@
 //! the place in the pixel and that on the light, then a direction and the place on the light where it leads. A four is
 //! a (0, 4)-sequence in base 4, both of its pairs are (0, 2)-sequences in base 2; fours, and pairs that stand alone, are
 //! padded: the sample index is shuffled for each, and every coordinate Owen-scrambled (Burley 2020, "Practical hash-based
-//! Owen scrambling", JCGT 9(4)). On a plane under a lamp, 256 samples err half as much as with padded pairs.
+//! Owen scrambling", JCGT 9(4)). On a plane under a lamp the error falls as the samples grow (`tests/trade/slopes.rs`).
 
 use super::{Sampler, opacity::MAX_PASSES};
 use crate::math::lanes::{BitLanes, Words};
