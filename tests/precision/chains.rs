@@ -10,14 +10,14 @@ use luxel::trace::spawn::triangle_vertices;
 use std::fmt::Write;
 
 /// One level: q as x, y, z, w of any length, and a scale.
-struct Level {
+pub(crate) struct Level {
     q: [f64; 4],
-    scale: DVec3,
-    translate: DVec3,
+    pub(crate) scale: DVec3,
+    pub(crate) translate: DVec3,
 }
 
 impl Level {
-    fn random(rng: &mut Rng, decades: f64) -> Level {
+    pub(crate) fn random(rng: &mut Rng, decades: f64) -> Level {
         let pick = |rng: &mut Rng| DVec3::from([(); 3].map(|()| rng.range(-1.0, 1.0)));
         let scale = [(); 3].map(|()| 10f64.powf(rng.range(-decades, decades)));
         Level {
@@ -28,7 +28,7 @@ impl Level {
     }
 
     /// T · R · S of a point, R by two cross products: p + 2 v × (v × p + w p), for a unit quaternion.
-    fn apply(&self, p: DVec3) -> DVec3 {
+    pub(crate) fn apply(&self, p: DVec3) -> DVec3 {
         let p = p * self.scale;
         let [x, y, z, w] = self.q;
         let v = DVec3::new(x, y, z);
@@ -36,7 +36,7 @@ impl Level {
         p + s * v.cross(v.cross(p) + w * p) + self.translate
     }
 
-    fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         let [t, s] = [self.translate, self.scale].map(|v| format!("{:?}", v.to_array()));
         let tuple = |s: String| s.replace('[', "(").replace(']', ")");
         let q = tuple(format!("{:?}", self.q));

@@ -5,8 +5,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may")]
 
+mod baked;
 mod chains;
 mod instances;
+mod judge;
 mod mirrored;
 mod places;
 mod rigid;
