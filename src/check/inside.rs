@@ -30,7 +30,7 @@ pub(super) fn camera_inside(posed: &Posed) -> Vec<Diagnostic> {
         .collect();
     let inside = |item: &&&Item| match item.form {
         Form::Sphere { radius, .. } => {
-            (item.to_world.translation - posed.view.eye).length() < radius
+            (item.to_world().translation - posed.view.eye).length() < radius
         }
         Form::Mesh(_) => winding_at(posed, item, posed.view.eye) > INSIDE,
     };
@@ -104,7 +104,7 @@ fn is_room(posed: &Posed, room: &Item) -> bool {
 /// How often a posed mesh winds around a point: the point goes into the mesh's space, where a mirroring transform
 /// changes nothing, as for the renderer.
 pub(super) fn winding_at(posed: &Posed, item: &Item, p: DVec3) -> f64 {
-    let inverse = item.to_world.inverse();
+    let inverse = item.to_world().inverse();
     let local = inverse.transform_point3(p);
     match posed.mesh(item) {
         Some(mesh) if local.is_finite() => winding(mesh, local),

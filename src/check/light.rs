@@ -7,6 +7,7 @@ use crate::asset::Light;
 use crate::diag::Diagnostic;
 use crate::math::{DVec3, ln};
 use crate::scene::BackgroundDesc;
+use crate::world::Emissive;
 use std::f64::consts::{LN_2, PI};
 
 /// Radiance of lit white paper above which a picture is white, even with ten stops less.
@@ -45,8 +46,8 @@ fn lit_background(posed: &Posed) -> bool {
 /// Whether a shape emits: as its entity says, or as its file does where the entity says nothing.
 pub(super) fn shines(posed: &Posed, item: &Item) -> bool {
     let emits = |radiance: [f64; 3]| radiance.iter().any(|c| *c > 0.0);
-    if let Some(radiance) = item.emissive {
-        return emits(radiance);
+    if let Some(Emissive(radiance)) = item.emissive {
+        return emits(*radiance);
     }
     let Some(mesh) = posed.mesh(item).filter(|_| item.material.is_none()) else {
         return false;

@@ -56,7 +56,8 @@ pub fn check(desc: &SceneDesc) -> Vec<Diagnostic> {
 /// [`crate::world::spawn`] made of `desc`. In the order of the text; what has no place comes last.
 #[must_use]
 pub fn check_world(desc: &SceneDesc, world: &World, store: &AssetStore) -> Vec<Diagnostic> {
-    let Some(posed) = Posed::of(desc, world, store) else {
+    let mut rows = world.query();
+    let Some(posed) = Posed::of(desc, world, store, &mut rows) else {
         return Vec::new();
     };
     let mut found = inside::camera_inside(&posed);

@@ -8,8 +8,8 @@ use crate::diag::{Diagnostic, Lines};
 use crate::math::{DAffine3, DVec3, sin_cos_deg, unit};
 use crate::scene::{Placed, SceneDesc};
 use crate::world::{AuthoringIndex, Camera, Emissive, Keys, Material, Name, Pose, Shape, Spin};
-use hecs::World;
-use std::collections::HashMap;
+use hecs::{QueryBorrow, World};
+use std::collections::BTreeMap;
 
 /// A sphere this many times as wide as the rest of the scene is a wall, as for the build.
 const WALL_RATIO: f64 = 16.0;
@@ -20,7 +20,9 @@ pub(super) struct Posed<'a> {
     pub(super) store: &'a AssetStore,
     lines: Lines<'a>,
     pub(super) view: View,
-    pub(super) items: Vec<Item>,
+    pub(super) items: Vec<Item<'a>>,
+    /// Of the meshes of items, in their own space.
+    boxes: BTreeMap<MeshId, Bounds>,
     /// Of the camera and of all items but walls, relative to the camera: what single precision is spread over.
     pub(super) extent: Bounds,
     pub(super) lights: Vec<Lamp>,
@@ -43,21 +45,16 @@ pub(super) struct View {
     pub(super) pixel: f64,
 }
 
-/// A sphere or mesh in its place.
-pub(super) struct Item {
+/// A sphere or mesh in its place. There may be very many.
+pub(super) struct Item<'a> {
     pub(super) index: AuthoringIndex,
-    pub(super) name: Option<String>,
+    name: Option<&'a Name>,
     pub(super) form: Form,
-    /// Local to world.
-    pub(super) to_world: DAffine3,
-    /// In its own space.
-    pub(super) local: Bounds,
+    pub(super) pose: &'a Pose,
     /// In world space.
     pub(super) bounds: Bounds,
-    /// Product of the scales of the entity and its ancestors, along x.
-    pub(super) scale: f64,
-    pub(super) material: Option<Material>,
-    pub(super) emissive: Option<[f64; 3]>,
+    pub(super) material: Option<&'a Material>,
+    pub(super) emissive: Option<&'a Emissive>,
     /// A sphere so much larger than the rest that it passes for a wall or a floor.
     pub(super) wall: bool,
 }
@@ -86,29 +83,25 @@ impl<'a> Posed<'a> {
         desc: &'a SceneDesc,
         world: &World,
         store: &'a AssetStore,
+        rows: &'a mut QueryBorrow<'_, Row<'static>>,
     ) -> Option<Posed<'a>> {
-        let mut rows: Vec<_> = world
-            .query::<(&AuthoringIndex, &Pose, Option<&Camera>, Option<&Light>)>()
-            .iter()
-            .map(|(index, pose, camera, light)| (*index, *pose, camera.copied(), light.copied()))
-            .collect();
-        rows.sort_by_key(|row| row.0);
-        let view = rows
-            .iter()
-            .find_map(|(index, pose, camera, _)| Some(View::of(desc, *index, pose, (*camera)?)))?;
-        let lights = rows.iter().filter_map(|(index, pose, _, light)| {
-            Some(Lamp {
-                index: *index,
-                place: pose.affine().translation,
-                light: (*light)?,
-            })
+        let mut cameras = world.query::<(&AuthoringIndex, &Pose, &Camera)>();
+        let (index, pose, camera) = cameras.iter().min_by_key(|row| row.0)?;
+        let view = View::of(desc, *index, pose, *camera);
+        let mut lamps = world.query::<(&AuthoringIndex, &Pose, &Light)>();
+        let lamps = lamps.iter().map(|(index, pose, light)| Lamp {
+            index: *index,
+            place: pose.affine().translation,
+            light: *light,
         });
+        let mut lights: Vec<Lamp> = lamps.collect();
+        lights.sort_unstable_by_key(|lamp| lamp.index);
         let turns = world.query::<&Spin>().iter().any(|s| s.deg_per_s != 0.0);
         let goes = world
             .query::<&Keys>()
             .iter()
             .any(|keys| keys.times().nth(1).is_some());
-        let mut items = items(world, store);
+        let (mut items, boxes) = items(rows, store);
         let extent = find_walls(&mut items, view.eye);
         Some(Posed {
             desc,
@@ -117,7 +110,8 @@ impl<'a> Posed<'a> {
             lines: Lines::of(&desc.source),
             view,
             items,
-            lights: lights.collect(),
+            boxes,
+            lights,
             moves: (turns || goes) && desc.animation.frames.len() > 1,
         })
     }
@@ -181,11 +175,16 @@ impl<'a> Posed<'a> {
         }
     }
 
+    /// The box of an item's mesh in its own space.
+    pub(super) fn local(&self, mesh: MeshId) -> Bounds {
+        self.boxes.get(&mesh).copied().unwrap_or(Bounds::EMPTY)
+    }
+
     /// How a message calls an item: its name, or what it is.
     pub(super) fn label(&self, item: &Item) -> String {
         let file = || self.mesh(item)?.path.file_name();
         match (&item.name, file()) {
-            (Some(name), _) => format!("{name:?}"),
+            (Some(Name(name)), _) => format!("{name:?}"),
             (None, Some(file)) => format!("the mesh of {}", file.display()),
             (None, None) => "a sphere".to_owned(),
         }
@@ -219,7 +218,12 @@ impl View {
     }
 }
 
-impl Item {
+impl Item<'_> {
+    /// Local to world.
+    pub(super) fn to_world(&self) -> DAffine3 {
+        self.pose.affine()
+    }
+
     /// Index of its entity in the scene.
     pub(super) fn entity(&self) -> usize {
         self.index.entity as usize
@@ -240,53 +244,54 @@ impl Item {
     }
 }
 
-fn items(world: &World, store: &AssetStore) -> Vec<Item> {
-    let mut boxes: HashMap<MeshId, Bounds> = HashMap::new();
-    let mut query = world.query::<(
-        &AuthoringIndex,
-        &Pose,
-        &Shape,
-        Option<&Name>,
-        Option<&Material>,
-        Option<&Emissive>,
-    )>();
-    let mut items: Vec<Item> = query
-        .iter()
+/// What is read of an entity with a shape.
+pub(super) type Row<'a> = (
+    &'a AuthoringIndex,
+    &'a Pose,
+    &'a Shape,
+    Option<&'a Name>,
+    Option<&'a Material>,
+    Option<&'a Emissive>,
+);
+
+/// Items in authoring order, and the boxes of their meshes.
+fn items<'a>(
+    rows: &'a mut QueryBorrow<'_, Row<'static>>,
+    store: &AssetStore,
+) -> (Vec<Item<'a>>, BTreeMap<MeshId, Bounds>) {
+    let mut boxes = BTreeMap::new();
+    let rows = rows.iter();
+    let mut items: Vec<Item> = rows
         .map(|(index, pose, shape, name, material, emissive)| {
             let to_world = pose.affine();
-            let (form, local, bounds) = match *shape {
+            let (form, bounds) = match *shape {
                 Shape::Sphere { radius, inverted } => {
-                    let local = Bounds::EMPTY
-                        .with(DVec3::splat(-radius))
-                        .with(DVec3::splat(radius));
                     let radius = radius * pose.size;
                     let center = to_world.translation;
                     let bounds = Bounds::EMPTY.with(center - radius).with(center + radius);
-                    (Form::Sphere { radius, inverted }, local, bounds)
+                    (Form::Sphere { radius, inverted }, bounds)
                 }
                 Shape::Mesh { mesh, .. } => {
-                    let local = *boxes
+                    let local: &Bounds = boxes
                         .entry(mesh)
                         .or_insert_with(|| Bounds::of_mesh(store.mesh(mesh)));
-                    (Form::Mesh(mesh), local, local.moved(&to_world))
+                    (Form::Mesh(mesh), local.moved(&to_world))
                 }
             };
             Item {
                 index: *index,
-                name: name.map(|n| n.0.clone()),
+                name,
                 form,
-                to_world,
-                local,
+                pose,
                 bounds,
-                scale: pose.size,
-                material: material.copied(),
-                emissive: emissive.map(|e| e.0),
+                material,
+                emissive,
                 wall: false,
             }
         })
         .collect();
-    items.sort_by_key(|item| item.index);
-    items
+    items.sort_unstable_by_key(|item| item.index);
+    (items, boxes)
 }
 
 /// Marks the walls and gives the extent of the rest, by the rule of the build (invariant 5 of its rebase): spheres from

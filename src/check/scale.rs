@@ -94,7 +94,7 @@ pub(super) fn collapsed(posed: &Posed) -> Vec<Diagnostic> {
             continue;
         };
         let count = *known.entry(id).or_insert_with(|| {
-            let step = item.local.longest() * HALF_STEP;
+            let step = posed.local(id).longest() * HALF_STEP;
             let (triangles, _) = mesh.corners.as_chunks::<3>();
             let lost = triangles.iter().filter(|t| is_below(mesh, t, step)).count();
             (lost * MIN_COLLAPSED > triangles.len()).then_some((lost, triangles.len()))
@@ -108,7 +108,7 @@ pub(super) fn collapsed(posed: &Posed) -> Vec<Diagnostic> {
             "{lost} of the {all} triangles of {} are smaller than a step of single precision over its {}: they are \
              points",
             posed.label(item),
-            short(item.local.longest())
+            short(posed.local(id).longest())
         );
         let hint =
             "does one vertex lie far from the rest by mistake? Otherwise cut the mesh into files";
@@ -158,7 +158,7 @@ pub(super) fn other_units(posed: &Posed) -> Vec<Diagnostic> {
     let mut seen: Vec<&Item> = posed
         .items
         .iter()
-        .filter(|item| item.size() > 0.0 && may_be_seen(&posed.view, item))
+        .filter(|item| item.size() > 0.0 && may_be_seen(posed, item))
         .collect();
     seen.sort_by(|a, b| a.size().total_cmp(&b.size()));
     let gap = |pair: &[&Item]| pair[1].size() >= UNIT_RATIO * pair[0].size();
@@ -191,7 +191,7 @@ fn is_lost(posed: &Posed, item: &Item) -> bool {
 /// Whether a mesh is there as its file has it, has a volume, and does not stand around the camera.
 fn is_body(posed: &Posed, item: &Item) -> bool {
     matches!(item.form, Form::Mesh(_))
-        && item.scale == 1.0
+        && item.pose.size == 1.0
         && item.bounds.shortest() > FLAT * item.size()
         && winding_at(posed, item, posed.view.eye).abs() < SURROUNDS
 }
@@ -209,7 +209,7 @@ fn told(posed: &Posed, item: &Item, other: &Item) -> Diagnostic {
         short(ratio.round()),
         posed.label(other)
     );
-    let scale = if larger { 0.001 } else { 1000.0 } * item.scale;
+    let scale = if larger { 0.001 } else { 1000.0 } * item.pose.size;
     let hint = format!("`transform: (scale: {})`", short(scale));
     posed
         .warn(item.entity(), item.component(), codes::OTHER_UNITS, says)

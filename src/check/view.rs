@@ -3,7 +3,7 @@
 //! Boxes stand for shapes, and a box that may be in view counts as in view: better silent than wrong.
 
 use super::codes;
-use super::posed::{Form, Item, Posed, View};
+use super::posed::{Form, Item, Posed};
 use super::words::{place, short};
 use crate::diag::Diagnostic;
 use crate::math::{DVec3, acos};
@@ -23,7 +23,7 @@ pub(super) fn view(posed: &Posed) -> Vec<Diagnostic> {
     let seen: Vec<&Item> = posed
         .items
         .iter()
-        .filter(|i| may_be_seen(&posed.view, i))
+        .filter(|i| may_be_seen(posed, i))
         .collect();
     let mut found = Vec::new();
     if seen.is_empty() && !posed.moves {
@@ -36,7 +36,8 @@ pub(super) fn view(posed: &Posed) -> Vec<Diagnostic> {
 }
 
 /// Whether an item's box, or the sphere itself, reaches into the view.
-pub(super) fn may_be_seen(view: &View, item: &Item) -> bool {
+pub(super) fn may_be_seen(posed: &Posed, item: &Item) -> bool {
+    let view = &posed.view;
     let (right, up) = view.half;
     // Inward normals of the pyramid's sides, and of the plane through the eye.
     let sides = [
@@ -50,13 +51,13 @@ pub(super) fn may_be_seen(view: &View, item: &Item) -> bool {
     let slack = view.camera.aperture_radius;
     match item.form {
         Form::Sphere { radius, .. } => {
-            let center = view.seen(item.to_world.translation);
+            let center = view.seen(item.to_world().translation);
             sides
                 .iter()
                 .all(|n| center.dot(*n) > -(radius + slack) * n.length())
         }
         Form::Mesh(_) => {
-            let corners = corners(view, item);
+            let corners = corners(posed, item);
             let inside = |n: &DVec3| corners.iter().any(|p| p.dot(*n) > -slack * n.length());
             sides.iter().all(inside)
         }
@@ -64,13 +65,15 @@ pub(super) fn may_be_seen(view: &View, item: &Item) -> bool {
 }
 
 /// The corners of an item's own box in the camera's space.
-fn corners(view: &View, item: &Item) -> [DVec3; 8] {
+fn corners(posed: &Posed, item: &Item) -> [DVec3; 8] {
+    let view = &posed.view;
     match item.form {
         Form::Sphere { .. } => item.bounds.corners().map(|p| view.seen(p)),
-        Form::Mesh(_) => item
-            .local
-            .corners()
-            .map(|p| view.seen(item.to_world.transform_point3(p))),
+        Form::Mesh(id) => {
+            let to_world = item.to_world();
+            let corners = posed.local(id).corners();
+            corners.map(|p| view.seen(to_world.transform_point3(p)))
+        }
     }
 }
 
@@ -119,9 +122,9 @@ struct Rect {
 
 impl Rect {
     /// Of boxes that lie wholly before the camera; `None` where one does not, or there is none.
-    fn of<'i>(view: &View, items: impl Iterator<Item = &'i Item>) -> Option<Rect> {
+    fn of<'i>(posed: &Posed, items: impl Iterator<Item = &'i Item<'i>>) -> Option<Rect> {
         let mut rect: Option<Rect> = None;
-        for p in items.flat_map(|item| corners(view, item)) {
+        for p in items.flat_map(|item| corners(posed, item)) {
             if p.z <= 0.0 {
                 return None;
             }
@@ -144,7 +147,7 @@ impl Rect {
 }
 
 fn below_a_pixel(posed: &Posed, seen: &[&Item]) -> Option<Diagnostic> {
-    let rect = Rect::of(&posed.view, seen.iter().copied())?;
+    let rect = Rect::of(posed, seen.iter().copied())?;
     let pixels = rect.size() / posed.view.pixel;
     if pixels >= 1.0 || posed.moves {
         return None;
@@ -178,7 +181,7 @@ fn radians(posed: &Posed) -> Option<Diagnostic> {
     }
     let inner = posed.items.iter().filter(|item| !item.wall);
     let rect = Rect::of(
-        view,
+        posed,
         inner.filter(|item| view.seen(item.bounds.center()).z > 0.0),
     );
     let fits = rect.is_some_and(|rect| rect.size() <= CROPPED * 2.0 * view.half.0.max(view.half.1));
@@ -205,7 +208,7 @@ fn blurred(posed: &Posed, seen: &[&Item]) -> Option<Diagnostic> {
     let mut least = f64::INFINITY;
     let (mut near, mut far) = (f64::INFINITY, 0.0_f64);
     for item in seen {
-        let depths = corners(view, item).map(|p| p.z);
+        let depths = corners(posed, item).map(|p| p.z);
         let nearest = depths.iter().copied().fold(f64::INFINITY, f64::min);
         let farthest = depths.iter().copied().fold(0.0, f64::max);
         let sharpest = focus
