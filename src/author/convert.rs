@@ -69,7 +69,7 @@ pub fn convert_model(model: &Model, loader: &Loader, points: &[DVec3], path: &st
         let mut entity = EntityDesc {
             parent: node.parent,
             transform: node::transform(&node.transform, &name, &mut scene.notes),
-            light: node.light.map(light),
+            light: node.light.map(|l| Box::new(light(l))),
             ..EntityDesc::default()
         };
         if let Some((index, mesh)) = mesh {
@@ -79,10 +79,10 @@ pub fn convert_model(model: &Model, loader: &Loader, points: &[DVec3], path: &st
             scene.shines |= emits(mesh);
         }
         if let Some(motion) = &node.motion {
-            entity.keys = node::keys(motion, &name, &mut scene.notes);
+            entity.keys = node::keys(motion, &name, &mut scene.notes).map(Box::new);
         }
         if let Some(vfov_deg) = node.camera_vfov_deg {
-            entity.camera = scene.camera(vfov_deg, &name);
+            entity.camera = scene.camera(vfov_deg, &name).map(Box::new);
         }
         scene.shines |= entity.light.is_some();
         entity.name = Some(name);

@@ -303,7 +303,7 @@ fn mesh(path: Placed<String>, wanted: &Turntable, transform: &TransformDesc) -> 
             path,
             lights: false,
         };
-        (None, Some(gltf))
+        (None, Some(Box::new(gltf)))
     } else {
         (Some(ShapeDesc::Mesh { path, mesh: None }), None)
     };

@@ -24,8 +24,8 @@ pub(super) fn radians(desc: &SceneDesc, lines: &Lines<'_>) -> Vec<Diagnostic> {
         all.retain(|deg| *deg != 0.0);
         all
     };
-    let spot = |i: usize| match desc.entities[i].value.light {
-        Some(LightDesc::Spot { outer_deg, .. }) => Some(outer_deg),
+    let spot = |i: usize| match desc.entities[i].value.light.as_deref() {
+        Some(LightDesc::Spot { outer_deg, .. }) => Some(*outer_deg),
         _ => None,
     };
     let count = desc.entities.len();

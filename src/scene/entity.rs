@@ -32,15 +32,16 @@ pub(super) struct RawEntity<'a> {
     /// Without `parent` and `material`.
     pub(super) desc: EntityDesc,
     pub(super) node: Node<'a>,
-    pub(super) name: Option<Node<'a>>,
     pub(super) parent: Option<(String, Node<'a>)>,
     pub(super) material: Option<(String, Node<'a>)>,
-    pub(super) shape: Option<Node<'a>>,
     pub(super) camera: Option<Node<'a>>,
-    pub(super) emissive: Option<Node<'a>>,
-    pub(super) normals: Option<Node<'a>>,
-    /// The file's nodes stand for shapes.
-    pub(super) gltf: Option<Node<'a>>,
+}
+
+impl<'a> RawEntity<'a> {
+    /// The value of a component that is written: looked for again, since few are asked for and entities may be many.
+    pub(super) fn component(&self, name: &str) -> Option<Node<'a>> {
+        self.node.field(name)?.given()
+    }
 }
 
 pub(super) fn entity<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<RawEntity<'a>> {
@@ -54,25 +55,62 @@ pub(super) fn entity<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<RawEntit
         material: None,
         transform: fields.read_or("transform", TransformDesc::default(), transform),
         spin: fields.read_if("spin", spin),
-        keys: motion::keys(&fields),
+        keys: motion::keys(&fields).map(Box::new),
         emissive: fields.read_if("emissive", emissive),
         normals: fields.read_if("normals", normals),
-        camera: fields.read_if("camera", settings::entity_camera),
-        light: fields.read_if("light", light::light),
-        gltf: fields.read_if("gltf", gltf),
+        camera: fields
+            .read_if("camera", settings::entity_camera)
+            .map(Box::new),
+        light: fields.read_if("light", light::light).map(Box::new),
+        gltf: fields.read_if("gltf", gltf).map(Box::new),
     };
+    check_components(&fields);
     Some(RawEntity {
         desc,
         node,
-        name: fields.get("name"),
         parent: reference("parent", "`parent`"),
         material: reference("material", "`material`"),
-        shape: fields.get("shape"),
         camera: fields.get("camera"),
-        emissive: fields.get("emissive"),
-        normals: fields.get("normals"),
-        gltf: fields.get("gltf"),
     })
+}
+
+/// Components that need another one.
+fn check_components(fields: &Fields<'_, '_>) {
+    let reader = fields.reader;
+    let [shape, gltf, material] = ["shape", "gltf", "material"].map(|name| fields.get(name));
+    let shapeless = shape.is_none() && gltf.is_none();
+    if let (Some(place), true) = (fields.get("emissive"), shapeless) {
+        reader.error_hint(
+            codes::DARK_EMITTER,
+            place,
+            "`emissive` needs a `shape` that shines",
+            "add a `shape`",
+        );
+    }
+    if let (Some(place), true) = (material, shapeless) {
+        reader.warn(
+            codes::IDLE_MATERIAL,
+            place,
+            "`material` has no effect on an entity without a `shape`",
+        );
+    }
+    // The file's nodes stand for shapes.
+    let is_mesh = gltf.is_some() || shape.is_some_and(|s| s.text.starts_with("Mesh"));
+    if let (Some(place), false) = (fields.get("normals"), is_mesh) {
+        reader.warn(
+            codes::IDLE_NORMALS,
+            place,
+            "`normals` has no effect on an entity without a mesh",
+        );
+    }
+    if let (Some(place), Some(_)) = (gltf, shape) {
+        reader.error_hint(
+            codes::MISPLACED,
+            place,
+            "an entity has either a `shape` or a `gltf`",
+            "give the file an entity of its own, with this one as its `parent`",
+        );
+    }
 }
 
 fn shape<'a>(reader: &Reader<'a>, node: Node<'a>) -> Option<ShapeDesc> {

@@ -93,6 +93,18 @@ impl<'a> Node<'a> {
             .collect())
     }
 
+    /// The value of a field that may be `None`; `Some` around it is taken off.
+    pub(super) fn given(self) -> Option<Node<'a>> {
+        match self.head() {
+            (Some("None"), _) => None,
+            (Some("Some"), body) => match body.tuple().as_deref() {
+                Ok([inner]) => Some(*inner),
+                _ => Some(self),
+            },
+            _ => Some(self),
+        }
+    }
+
     /// The value of one field, whatever stands before the parentheses.
     pub(super) fn field(self, name: &str) -> Option<Node<'a>> {
         let fields = self.head().1.fields().ok()?;

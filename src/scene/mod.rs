@@ -80,14 +80,15 @@ pub fn load(path: &Path) -> Result<Loaded, LoadError> {
             source,
         },
     })?;
-    let text = match std::str::from_utf8(&bytes) {
-        Ok(text) => text,
+    let source = match std::str::from_utf8(&bytes) {
+        Ok(text) => source(text),
         Err(error) => {
             let found = vec![not_text(&bytes, error.valid_up_to(), path)];
             return Err(LoadError::Invalid(found, None));
         }
     };
-    match read_text(text, path) {
+    drop(bytes);
+    match read_text(&source, path) {
         (Some(desc), found) if !has_errors(&found) => Ok(Loaded {
             desc,
             warnings: found,
@@ -115,7 +116,7 @@ fn read(path: &Path) -> std::io::Result<Vec<u8>> {
 /// # Errors
 /// Every error of the scene, among its warnings, in the order of the text; of errors of syntax only the first.
 pub fn parse(text: &str, file: &Path) -> Result<(SceneDesc, Vec<Diagnostic>), Vec<Diagnostic>> {
-    match read_text(text, file) {
+    match read_text(&source(text), file) {
         (Some(desc), found) if !has_errors(&found) => Ok((desc, found)),
         (_, found) => Err(found),
     }
@@ -125,20 +126,24 @@ fn has_errors(found: &[Diagnostic]) -> bool {
     found.iter().any(|d| d.severity == Severity::Error)
 }
 
-/// What can be read of a scene, and everything that there is to say about it.
-fn read_text(text: &str, file: &Path) -> (Option<SceneDesc>, Vec<Diagnostic>) {
+/// The text of a scene as it is kept.
+fn source(text: &str) -> Arc<str> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     // A comment in the last line needs its line end.
-    let source: Arc<str> = if text.ends_with('\n') {
+    if text.ends_with('\n') {
         text.into()
     } else {
         format!("{text}\n").into()
-    };
-    let reader = Reader::new(&source, file);
-    let desc = match Node::document(&source) {
-        Ok(document) => scene(&reader, document, &source),
+    }
+}
+
+/// What can be read of a scene, and everything that there is to say about it.
+fn read_text(source: &Arc<str>, file: &Path) -> (Option<SceneDesc>, Vec<Diagnostic>) {
+    let reader = Reader::new(source, file);
+    let desc = match Node::document(source) {
+        Ok(document) => scene(&reader, document, source),
         Err(LayerError::Syntax(error, at)) => {
-            reader.report(syntax::diagnostic(&error, at, &source, file));
+            reader.report(syntax::diagnostic(&error, at, source, file));
             None
         }
         Err(LayerError::OtherKind) => None,
@@ -180,6 +185,9 @@ fn scene<'a>(reader: &Reader<'a>, document: Node<'a>, source: &Arc<str>) -> Opti
         at: e.node.at,
         len: e.node.text.len(),
     };
+    let mut entities: Vec<_> = entities.into_iter().map(placed).collect();
+    // They were collected in place, where what is read of an entity took more.
+    entities.shrink_to_fit();
     Some(SceneDesc {
         file: reader.file.to_owned(),
         source: Arc::clone(source),
@@ -187,7 +195,7 @@ fn scene<'a>(reader: &Reader<'a>, document: Node<'a>, source: &Arc<str>) -> Opti
         background,
         camera,
         materials,
-        entities: entities.into_iter().map(placed).collect(),
+        entities,
         animation,
     })
 }

@@ -4,7 +4,7 @@
 
 use super::layer::{LayerError, Node, Pair};
 use super::syntax;
-use crate::diag::{Diagnostic, Lines, codes};
+use crate::diag::{Diagnostic, Lines, Severity, codes};
 use std::cell::{Cell, RefCell};
 use std::path::Path;
 
@@ -64,6 +64,15 @@ impl<'a> Reader<'a> {
             place.at,
             place.text.len(),
         )
+    }
+
+    /// A warning at `place`.
+    pub(super) fn warn(&self, code: &'static str, place: Node<'_>, message: &str) {
+        let error = self.diagnostic(code, place, message);
+        self.report(Diagnostic {
+            severity: Severity::Warning,
+            ..error
+        });
     }
 
     /// Line of a place, from 1.
@@ -233,15 +242,8 @@ impl<'r, 'a> Fields<'r, 'a> {
 
     /// The value of a field that is there and not `None`; `Some` around it is taken off.
     pub(super) fn get(&self, name: &str) -> Option<Node<'a>> {
-        let value = self.pairs.iter().find(|p| p.key.text == name)?.value;
-        match value.head() {
-            (Some("None"), _) => None,
-            (Some("Some"), body) => match body.tuple().as_deref() {
-                Ok([inner]) => Some(*inner),
-                _ => Some(value),
-            },
-            _ => Some(value),
-        }
+        let pair = self.pairs.iter().find(|p| p.key.text == name)?;
+        pair.value.given()
     }
 
     /// The name of a field that is there, for a place.

@@ -37,7 +37,6 @@ pub(super) fn resolve(
                 unknown(reader, *place, &format!("material {name:?}"), best);
             }
         }
-        check_components(reader, entity);
     }
     break_cycles(reader, entities);
     for (i, stretcher) in stretchers(entities).into_iter().enumerate() {
@@ -49,12 +48,12 @@ pub(super) fn resolve(
 fn entity_names(reader: &Reader<'_>, entities: &[RawEntity<'_>]) -> BTreeMap<String, usize> {
     let mut names = BTreeMap::new();
     for (i, entity) in entities.iter().enumerate() {
-        let (Some(name), Some(place)) = (&entity.desc.name, entity.name) else {
+        let (Some(name), Some(place)) = (&entity.desc.name, entity.component("name")) else {
             continue;
         };
         if let Some(&first) = names.get(name) {
             let first: &RawEntity<'_> = &entities[first];
-            let line = reader.line(first.name.unwrap_or(first.node));
+            let line = reader.line(first.component("name").unwrap_or(first.node));
             let message = format!("the entity {name:?} is given twice");
             reader.error_hint(
                 codes::DUPLICATE_NAME,
@@ -80,52 +79,6 @@ fn unknown(reader: &Reader<'_>, place: Node<'_>, what: &str, best: Option<&str>)
         ),
         None => reader.error(codes::UNKNOWN_NAME, place, message),
     }
-}
-
-/// Components that need another one.
-fn check_components(reader: &Reader<'_>, entity: &RawEntity<'_>) {
-    let shapeless = entity.shape.is_none() && entity.gltf.is_none();
-    if let (Some(place), true) = (entity.emissive, shapeless) {
-        reader.error_hint(
-            codes::DARK_EMITTER,
-            place,
-            "`emissive` needs a `shape` that shines",
-            "add a `shape`",
-        );
-    }
-    if let (Some((_, place)), true) = (&entity.material, shapeless) {
-        warn(
-            reader,
-            codes::IDLE_MATERIAL,
-            *place,
-            "`material` has no effect on an entity without a `shape`",
-        );
-    }
-    let is_mesh = entity.gltf.is_some() || entity.shape.is_some_and(|s| s.text.starts_with("Mesh"));
-    if let (Some(place), false) = (entity.normals, is_mesh) {
-        warn(
-            reader,
-            codes::IDLE_NORMALS,
-            place,
-            "`normals` has no effect on an entity without a mesh",
-        );
-    }
-    if let (Some(place), Some(_)) = (entity.gltf, entity.shape) {
-        reader.error_hint(
-            codes::MISPLACED,
-            place,
-            "an entity has either a `shape` or a `gltf`",
-            "give the file an entity of its own, with this one as its `parent`",
-        );
-    }
-}
-
-fn warn(reader: &Reader<'_>, code: &'static str, place: Node<'_>, message: &str) {
-    let error = reader.diagnostic(code, place, message);
-    reader.report(Diagnostic {
-        severity: crate::diag::Severity::Warning,
-        ..error
-    });
 }
 
 /// Reports each cycle of parents once, naming its members, and cuts it.
@@ -214,7 +167,7 @@ fn check_sphere(
 ) {
     let sphere = &entities[index];
     let (Some(ShapeDesc::Sphere { .. }), Some(place), Some(by)) =
-        (&sphere.desc.shape, sphere.shape, stretcher)
+        (&sphere.desc.shape, sphere.component("shape"), stretcher)
     else {
         return;
     };
@@ -249,7 +202,7 @@ pub(super) fn check_cameras(
         .chain(entities.iter().filter_map(|e| e.camera));
     let Some(first) = cameras.next() else {
         // A glTF file may bring one, which is known when it is read.
-        if entities.iter().any(|e| e.gltf.is_some()) {
+        if entities.iter().any(|e| e.component("gltf").is_some()) {
             return;
         }
         let hint = "add `camera: (at: (0, 0, 5), look_at: (0, 0, 0))` at top level";

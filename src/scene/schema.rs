@@ -285,7 +285,7 @@ impl Default for MaterialDesc {
     }
 }
 
-/// An entity: a struct of optional components.
+/// An entity: a struct of optional components. Those that few entities have are boxed: a scene may have very many.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct EntityDesc {
     /// Unique where given.
@@ -301,17 +301,17 @@ pub struct EntityDesc {
     /// Turning.
     pub spin: Option<SpinDesc>,
     /// Moving along keys, in place of those parts of `transform` that they name.
-    pub keys: Option<KeysDesc>,
+    pub keys: Option<Box<KeysDesc>>,
     /// Emitted radiance in W·sr⁻¹·m⁻².
     pub emissive: Option<[f64; 3]>,
     /// Normals of a mesh; default `File`, and where the file has none, `Smooth(angle_deg: 60)` for OBJ, `Flat` for glTF.
     pub normals: Option<NormalsDesc>,
     /// A camera at this entity, looking along its −Z.
-    pub camera: Option<CameraDesc>,
+    pub camera: Option<Box<CameraDesc>>,
     /// A light at this entity, along its −Z.
-    pub light: Option<LightDesc>,
+    pub light: Option<Box<LightDesc>>,
     /// The nodes of a glTF file under this entity; `material`, `normals` and `emissive` concern all of them.
-    pub gltf: Option<GltfDesc>,
+    pub gltf: Option<Box<GltfDesc>>,
 }
 
 /// A shape.

@@ -284,9 +284,12 @@ fn a_camera_stands_on_an_entity_too() {
         vfov_deg: 30.0,
         ..CameraDesc::default()
     };
-    assert_eq!(desc.entities[0].value.camera, Some(wanted));
+    assert_eq!(desc.entities[0].value.camera.as_deref(), Some(&wanted));
     let desc = good("Scene(version: 1, entities: [(camera: ())])");
-    assert_eq!(desc.entities[0].value.camera, Some(CameraDesc::default()));
+    assert_eq!(
+        desc.entities[0].value.camera.as_deref(),
+        Some(&CameraDesc::default())
+    );
 }
 
 #[test]

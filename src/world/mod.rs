@@ -7,6 +7,7 @@
 //! Deliberately absent: kernels, flat buffers, pixels.
 
 pub mod codes;
+mod columns;
 mod components;
 mod expand;
 mod files;

@@ -1,20 +1,19 @@
 //! Spawn: a description becomes a world, and the files that it names a store.
 
+use super::columns::{Rows, camera_of, normals};
 use super::components::{
-    AuthoringIndex, Camera, Color, Ease, Emissive, Keys, Material, Name, Normals, Parent,
-    Scattering, Shape, Sky, Spin, Track, Transform, Turn,
+    AuthoringIndex, Color, Emissive, Keys, Material, Scattering, Shape, Sky, Transform,
 };
 use super::expand::{self, Root, expand};
 use super::{Pose, codes, files::Files, pose};
-use crate::asset::{AssetStore, Filter, Light, Loader, MAX_RADIANCE, Mesh, MeshId, ModelId, Wrap};
+use crate::asset::{AssetStore, Filter, Loader, MAX_RADIANCE, Mesh, MeshId, ModelId, Wrap};
 use crate::diag::{self, Diagnostic, Severity};
-use crate::math::{DMat3, DVec3, axis_angle_deg, euler_deg, quaternion, unit};
+use crate::math::{DMat3, DVec3, unit};
 use crate::scene::{
-    BackgroundDesc, CameraDesc, CameraPose, ColorDesc, EaseDesc, EntityDesc, GltfDesc, KeyDesc,
-    KeysDesc, LightDesc, MaterialDesc, NormalsDesc, Placed, RotateDesc, SceneDesc, ShapeDesc,
-    TextureFilterDesc, TransformDesc, WrapDesc,
+    BackgroundDesc, CameraPose, ColorDesc, EntityDesc, GltfDesc, MaterialDesc, Placed, SceneDesc,
+    ShapeDesc, TextureFilterDesc, WrapDesc,
 };
-use hecs::{Entity, EntityBuilder, World};
+use hecs::{Entity, World};
 use std::collections::BTreeSet;
 
 /// What [`spawn`] gives.
@@ -53,24 +52,21 @@ pub fn spawn(desc: &SceneDesc, loader: Loader) -> Result<Spawned, Vec<Diagnostic
     // Each with the index of the entity in the scene.
     let mut nodes: Vec<(usize, Entity)> = Vec::new();
     let mut cameras: Vec<(Entity, f64)> = Vec::new();
+    let rows = Rows {
+        desc,
+        entities: &entities,
+        sources: &sources,
+        materials: &materials,
+    };
+    rows.insert(&mut world);
     for (i, entity) in desc.entities.iter().enumerate() {
         let entity = &entity.value;
-        let mut components = components(entity, i as u32, sources[i]);
-        if let Some(parent) = entity.parent.and_then(|p| entities.get(p)) {
-            components.add(Parent(*parent));
-        }
-        let material = entity.material.and_then(|m| *materials.get(m)?);
-        if let Some(material) = material {
-            components.add(material);
-        }
-        // The entity was spawned above, so the only error, "no such entity", cannot happen.
-        let _ = world.insert(entities[i], components.build());
         if let (Source::Model(model), Some(gltf)) = (sources[i], &entity.gltf) {
             let root = Root {
                 entity: entities[i],
                 index: i as u32,
                 lights: gltf.lights,
-                material,
+                material: entity.material.and_then(|m| *materials.get(m)?),
                 normals: normals(entity.normals),
                 emissive: entity.emissive.map(Emissive),
             };
@@ -105,11 +101,14 @@ pub fn spawn(desc: &SceneDesc, loader: Loader) -> Result<Spawned, Vec<Diagnostic
         Some(error) if error.severity == Severity::Error => errors.push(error),
         found => warnings.extend(found),
     }
-    nodes.extend(entities.into_iter().enumerate());
+    let entities = || entities.iter().copied().enumerate();
     let mut lost = BTreeSet::new();
     for t in key_times(&world).into_iter().chain([0.0]) {
         pose(&mut world, t);
-        lost.extend(out_of_reach(&world, &nodes));
+        lost.extend(out_of_reach(
+            &world,
+            nodes.iter().copied().chain(entities()),
+        ));
     }
     errors.extend(lost.into_iter().map(|i| told_out_of_reach(desc, i)));
     if errors.is_empty() {
@@ -144,7 +143,7 @@ pub fn open_files(desc: &SceneDesc, loader: Loader) -> Vec<Diagnostic> {
 
 /// What an entity's triangles come from.
 #[derive(Clone, Copy)]
-enum Source {
+pub(super) enum Source {
     Nothing,
     Mesh(MeshId),
     Model(ModelId),
@@ -157,7 +156,7 @@ impl Source {
             _ => None,
         };
         let model = |gltf: &GltfDesc| files.model(&gltf.path).map(Source::Model);
-        mesh.or_else(|| entity.gltf.as_ref().and_then(model))
+        mesh.or_else(|| entity.gltf.as_deref().and_then(model))
             .unwrap_or(Source::Nothing)
     }
 
@@ -204,133 +203,6 @@ fn take_camera(
     let hint = "add a `camera` to the scene to choose";
     let warning = Diagnostic::warning(codes::MORE_CAMERAS, says).hint(hint);
     Some(warning.in_file(&desc.file))
-}
-
-/// The components that need neither other entities nor materials.
-fn components(entity: &EntityDesc, index: u32, source: Source) -> EntityBuilder {
-    let mut builder = EntityBuilder::new();
-    builder
-        .add(AuthoringIndex {
-            entity: index,
-            node: 0,
-        })
-        // Here already, or the first pose would move all components to another place.
-        .add(Pose::IDENTITY)
-        .add(transform(&entity.transform));
-    if let Some(name) = &entity.name {
-        builder.add(Name(name.clone()));
-    }
-    let shape = match (&entity.shape, source) {
-        (Some(ShapeDesc::Sphere { radius, inverted }), _) => Some(Shape::Sphere {
-            radius: *radius,
-            inverted: *inverted,
-        }),
-        (_, Source::Mesh(mesh)) => Some(Shape::Mesh {
-            mesh,
-            normals: normals(entity.normals),
-        }),
-        _ => None,
-    };
-    if let Some(shape) = shape {
-        builder.add(shape);
-    }
-    if let Some(spin) = &entity.spin {
-        builder.add(Spin {
-            axis: DVec3::from_array(spin.axis),
-            deg_per_s: spin.deg_per_s,
-            pivot: spin.pivot.map(DVec3::from_array),
-        });
-    }
-    if let Some(keys) = &entity.keys {
-        builder.add(keys_of(keys));
-    }
-    if let Some(radiance) = entity.emissive {
-        builder.add(Emissive(radiance));
-    }
-    if let Some(camera) = &entity.camera {
-        builder.add(camera_of(camera));
-    }
-    if let Some(light) = entity.light {
-        builder.add(light_of(light));
-    }
-    builder
-}
-
-fn keys_of(desc: &KeysDesc) -> Keys {
-    let turn = |desc: RotateDesc| match desc {
-        RotateDesc::Quat(q) => Turn::of_quaternion(q),
-        desc => Turn::of_matrix(rotation(desc)),
-    };
-    let vector = DVec3::from_array;
-    Keys {
-        translate: track(desc, |key| key.translate.map(vector)),
-        rotate: track(desc, |key| key.rotate.map(turn)),
-        scale: track(desc, |key| key.scale.map(vector)),
-    }
-}
-
-/// The keys that have a value of this part.
-fn track<T>(desc: &KeysDesc, value: impl Fn(&KeyDesc) -> Option<T>) -> Track<T> {
-    let keys = desc.keys.iter();
-    let (times, values) = keys.filter_map(|key| Some((key.t, value(key)?))).unzip();
-    Track {
-        times,
-        values,
-        tangents: Vec::new(),
-        ease: match desc.ease {
-            EaseDesc::Linear => Ease::Linear,
-            EaseDesc::Smooth => Ease::Smooth,
-            EaseDesc::Step => Ease::Step,
-        },
-    }
-}
-
-fn light_of(desc: LightDesc) -> Light {
-    match desc {
-        LightDesc::Point { intensity } => Light::Point { intensity },
-        LightDesc::Spot {
-            intensity,
-            inner_deg,
-            outer_deg,
-        } => Light::Spot {
-            intensity,
-            inner_deg,
-            outer_deg,
-        },
-        LightDesc::Sun { irradiance } => Light::Sun { irradiance },
-    }
-}
-
-fn normals(desc: Option<NormalsDesc>) -> Normals {
-    match desc {
-        None | Some(NormalsDesc::File) => Normals::File,
-        Some(NormalsDesc::Flat) => Normals::Flat,
-        Some(NormalsDesc::Smooth { angle_deg }) => Normals::Smooth { angle_deg },
-    }
-}
-
-fn transform(desc: &TransformDesc) -> Transform {
-    Transform {
-        translate: DVec3::from_array(desc.translate),
-        rotate: rotation(desc.rotate),
-        scale: DVec3::from_array(desc.scale),
-    }
-}
-
-fn rotation(desc: RotateDesc) -> DMat3 {
-    match desc {
-        RotateDesc::Euler(deg) => euler_deg(DVec3::from_array(deg)),
-        RotateDesc::AxisAngle { axis, deg } => axis_angle_deg(DVec3::from_array(axis), deg),
-        RotateDesc::Quat(q) => quaternion(q),
-    }
-}
-
-fn camera_of(desc: &CameraDesc) -> Camera {
-    Camera {
-        vfov_deg: desc.vfov_deg,
-        aperture_radius: desc.aperture_radius,
-        focus_distance: desc.focus_distance,
-    }
 }
 
 /// Looks from `at` along −Z at `look_at`, with `up` in the plane of Y and Z. The reader has refused degenerate ones.
@@ -470,7 +342,7 @@ const MOST_TIMES: usize = 256;
 
 /// Indices of the entities whose composed place or size, or that of a node under them, is not finite. `entities` come each
 /// with its index.
-fn out_of_reach(world: &World, entities: &[(usize, Entity)]) -> Vec<usize> {
+fn out_of_reach(world: &World, entities: impl Iterator<Item = (usize, Entity)>) -> Vec<usize> {
     let reachable = |entity: Entity| {
         let pose = world.get::<&Pose>(entity).map(|p| *p).unwrap_or_default();
         let radius = match world.get::<&Shape>(entity).as_deref() {
@@ -479,8 +351,8 @@ fn out_of_reach(world: &World, entities: &[(usize, Entity)]) -> Vec<usize> {
         };
         pose.affine().is_finite() && (radius * pose.size).is_normal()
     };
-    let lost = entities.iter().filter(|(_, e)| !reachable(*e));
-    lost.map(|(i, _)| *i).collect()
+    let lost = entities.filter(|(_, e)| !reachable(*e));
+    lost.map(|(i, _)| i).collect()
 }
 
 fn told_out_of_reach(desc: &SceneDesc, entity: usize) -> Diagnostic {
@@ -495,6 +367,7 @@ fn told_out_of_reach(desc: &SceneDesc, entity: usize) -> Diagnostic {
 mod tests {
     use super::*;
     use crate::scene;
+    use crate::world::Camera;
     use std::path::Path;
 
     #[test]

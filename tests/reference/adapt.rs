@@ -59,7 +59,7 @@ pub(crate) fn scene(desc: &SceneDesc, frame: u32) -> Scene {
     for (i, entity) in desc.entities.iter().enumerate() {
         let entity = &entity.value;
         let map = map_of(desc, i, time);
-        bulbs.extend(entity.light.map(|light| bulb(light, &map)));
+        bulbs.extend(entity.light.as_deref().map(|light| bulb(*light, &map)));
         let Some(shape) = &entity.shape else { continue };
         let material = match (entity.material, entity.emissive) {
             (Some(m), _) => &materials[m],
@@ -261,7 +261,7 @@ fn view(desc: &SceneDesc, time: f64) -> (&CameraDesc, DVec3, [DVec3; 2]) {
         return (camera, eye, [forward, right]);
     }
     let mut cameras = desc.entities.iter().enumerate().filter_map(|(i, e)| {
-        let camera = e.value.camera.as_ref()?;
+        let camera = e.value.camera.as_deref()?;
         Some((i, camera))
     });
     let (i, camera) = cameras.next().expect("a camera");

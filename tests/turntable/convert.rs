@@ -128,8 +128,8 @@ fn every_node_becomes_an_entity_of_its_own_name() {
     assert!(desc.camera.is_none(), "the file has one");
     assert!(entities[1].camera.is_some() && entities[2].camera.is_none());
     assert_eq!(
-        entities[2].light,
-        Some(LightDesc::Sun {
+        entities[2].light.as_deref(),
+        Some(&LightDesc::Sun {
             irradiance: [1.0, 2.0, 3.0]
         })
     );

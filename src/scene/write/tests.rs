@@ -32,8 +32,8 @@ fn content(desc: &SceneDesc) -> String {
         if let Some(ShapeDesc::Mesh { path, .. }) = &mut entity.value.shape {
             (path.at, path.len) = (0, 0);
         }
-        if let Some(GltfDesc { path, .. }) = &mut entity.value.gltf {
-            (path.at, path.len) = (0, 0);
+        if let Some(gltf) = &mut entity.value.gltf {
+            (gltf.path.at, gltf.path.len) = (0, 0);
         }
     }
     format!("{desc:?}")
