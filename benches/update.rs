@@ -70,22 +70,14 @@ fn main() {
 fn crowd(folder: &Path) {
     fs::write(folder.join("ball.obj"), ball(MEMBER)).expect("writable");
     let (one, alone) = memory::peak(|| instances(folder, 1));
-    let before = resident();
     let (all, peak) = memory::peak(|| instances(folder, CROWD));
-    let after = resident();
     let each = |of_all: usize, of_one: usize| of_all.saturating_sub(of_one) / CROWD as usize;
     println!("\n{CROWD} instances, each:");
     println!("{:6} bytes in the flat scene", each(all, one));
     println!(
-        "{:6} bytes of the heap, world and build included, at its peak",
+        "{:6} bytes of the heap, world and build included, at its peak\n",
         each(peak, alone)
     );
-    if let (Some(before), Some(after)) = (before, after) {
-        let each = each(after, before);
-        println!(
-            "{each:6} bytes of the process, with what the system's allocator keeps for every thread\n"
-        );
-    }
 }
 
 /// Renders so many instances, and says how large their flat scene is. They are spawned as the world would spawn them,
@@ -204,12 +196,4 @@ fn ball(steps: u32) -> String {
         }
     }
     text
-}
-
-/// Resident bytes of this process, where the system tells.
-fn resident() -> Option<usize> {
-    let status = fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find(|line| line.starts_with("VmRSS:"))?;
-    let kilobytes: usize = line.split_whitespace().nth(1)?.parse().ok()?;
-    Some(1024 * kilobytes)
 }

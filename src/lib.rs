@@ -124,6 +124,9 @@
 //!   is ever refitted.
 //! * The box of an instance comes from a table of how far its mesh reaches in 486 directions, and is a little larger than
 //!   that of its vertices, which nobody could look at in every frame.
+//! * Entities enter the world a column of components at a time, into tables as large as they will be: hecs doubles a full one,
+//!   and moves it. The command tells glibc to give back what is freed (`math::pages`). Both for the sake of scenes of ten
+//!   thousand instances.
 //! * `world::Time` is a frame and a rate, since frame / rate is rounded: a turn of whole frames is one to the bit.
 //! * Frames of an animation are `NAME.partial` until they are finished, whatever the process, so that one that is killed
 //!   leaves nothing that the next does not replace; they are known again by their metadata, entry by entry, so that what

@@ -135,9 +135,13 @@ pub(crate) fn extract<'a>(
             light,
         }));
     }
-    extracted.spheres.sort_by_key(|item| item.look.index);
-    extracted.meshes.sort_by_key(|item| item.look.index);
-    extracted.lights.sort_by_key(|item| item.index);
+    extracted
+        .spheres
+        .sort_unstable_by_key(|item| item.look.index);
+    extracted
+        .meshes
+        .sort_unstable_by_key(|item| item.look.index);
+    extracted.lights.sort_unstable_by_key(|item| item.index);
     extracted
 }
 

@@ -96,7 +96,9 @@ impl Loaded {
     }
 
     /// Starts the renderer's threads.
-    pub(crate) fn renderer(self, settings: Settings) -> Result<Renderer, Failure> {
+    pub(crate) fn renderer(mut self, settings: Settings) -> Result<Renderer, Failure> {
+        // The world has them now.
+        self.desc.entities = Vec::new();
         Renderer::new(&self.desc, self.world, &self.assets, settings)
             .map_err(|e| Failure::threads(&e))
     }

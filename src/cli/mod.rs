@@ -51,6 +51,7 @@ mod versus;
 mod video;
 mod writer;
 
+use crate::math::pages;
 use args::{Cli, Command};
 use clap::Parser;
 use failure::{Failure, code};
@@ -61,6 +62,7 @@ use std::process::ExitCode;
 #[must_use]
 pub fn run() -> ExitCode {
     install_panic_hook();
+    pages::give_back_what_is_freed();
     // Usage errors, help and version leave here: 2, 0, 0.
     let cli = Cli::parse();
     threads::allot(cli.command.threads());

@@ -50,7 +50,7 @@ impl From<f64> for Time {
 
 /// Writes the [`Pose`] of every entity at a time. Nothing accumulates: poses of two equal times are equal bits.
 pub fn pose(world: &mut World, time: impl Into<Time>) {
-    let poses = poses(world, time);
+    let time = time.into();
     let bare: Vec<Entity> = world
         .query_mut::<Without<Entity, &Pose>>()
         .into_iter()
@@ -59,9 +59,26 @@ pub fn pose(world: &mut World, time: impl Into<Time>) {
         // The entity was listed a moment ago, so the only error of this call, "no such entity", cannot happen.
         let _ = world.insert_one(entity, Pose::default());
     }
+    if world.query_mut::<&Parent>().into_iter().next().is_none() {
+        // Nobody needs another's: without a list of all.
+        for (pose, own) in world.query_mut::<(&mut Pose, Own)>() {
+            *pose = at(own, time);
+        }
+        return;
+    }
+    let poses = poses(world, time);
     for (entity, pose) in world.query_mut::<(Entity, &mut Pose)>() {
         *pose = *poses.of(entity);
     }
+}
+
+/// What places an entity in its parent's frame.
+type Own<'a> = (Option<&'a Transform>, Option<&'a Keys>, Option<&'a Spin>);
+
+/// The pose of an entity in its parent's frame.
+fn at((transform, keys, spin): Own, time: Time) -> Pose {
+    let transform = transform.copied().unwrap_or_default();
+    Placed::at(&transform, keys, time.seconds()).turned(spin, time)
 }
 
 /// The poses of all entities of a world at one time.
@@ -88,20 +105,13 @@ pub fn poses(world: &World, time: impl Into<Time>) -> Poses {
     let time = time.into();
     let mut all = Vec::with_capacity(world.len() as usize);
     let mut children = Vec::new();
-    let mut rows = world.query::<(
-        Entity,
-        Option<&Transform>,
-        Option<&Keys>,
-        Option<&Spin>,
-        Option<&Parent>,
-    )>();
-    for (entity, transform, keys, spin, parent) in rows.iter() {
+    let mut rows = world.query::<(Entity, Own, Option<&Parent>)>();
+    for (entity, from, parent) in rows.iter() {
         let own = entity.id() as usize;
         if own >= all.len() {
             all.resize(own + 1, Pose::default());
         }
-        let transform = transform.copied().unwrap_or_default();
-        all[own] = Placed::at(&transform, keys, time.seconds()).turned(spin, time);
+        all[own] = at(from, time);
         if let Some(Parent(parent)) = parent.filter(|parent| world.contains(parent.0)) {
             children.push((own, parent.id() as usize));
         }

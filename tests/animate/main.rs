@@ -2,6 +2,7 @@
 //! that an update gives what a build from nothing gives.
 
 mod command;
+mod crowd;
 mod folder;
 mod gltf;
 mod interrupted;
