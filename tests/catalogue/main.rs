@@ -7,9 +7,9 @@
 //! cargo test --release --test catalogue deep -- --ignored --nocapture
 //! ```
 //!
-//! which also writes the README's table, to `target/tmp/catalogue.md`. That takes hours; `CATALOGUE_TRIALS=1e7` before it
-//! tries nothing more often than that. Seeds are fixed, so that a run can be repeated. 0 failures of N trials mean less
-//! than one in N / 3 (with 95 % certainty).
+//! which also writes the README's table, to `target/tmp/catalogue.md`. That takes an hour on two cores;
+//! `CATALOGUE_TRIALS=1e7` before it tries nothing more often than that. Seeds are fixed, so that a run can be repeated. 0
+//! failures of N trials mean less than one in N / 3 (with 95 % certainty).
 //!
 //! | items | where |
 //! |---|---|
