@@ -7,6 +7,7 @@
 
 mod baked;
 mod chains;
+mod crowd;
 mod instances;
 mod judge;
 mod mirrored;
