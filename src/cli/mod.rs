@@ -43,6 +43,7 @@ mod stability_args;
 mod start;
 mod stats;
 mod threads;
+mod tracing;
 mod tune;
 mod tune_args;
 mod tuned;

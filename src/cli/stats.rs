@@ -2,6 +2,7 @@
 
 use super::patience::megabytes;
 use super::progress::words;
+use super::tracing;
 use crate::film::{ErrorBar, Film};
 use crate::render::{Ended, NonFinite, Stats};
 use serde_json::json;
@@ -188,7 +189,10 @@ impl Account<'_> {
             "threads": stats.threads,
             "isa": self.isa,
             "tree": self.tree,
-            "rays": { "closest": stats.closest_rays, "occlusion": stats.occlusion_rays },
+            "rays": {
+                "closest": stats.tracing.closest_rays(),
+                "occlusion": stats.tracing.occlusion_rays(),
+            },
             "mrays_per_second": stats.mrays_per_second(),
             "bytes": { "files": self.files, "buffers": stats.bytes },
             "seconds": {
@@ -205,13 +209,14 @@ impl Account<'_> {
             "per_ray": {
                 "nanoseconds_of_a_thread": ratio(
                     stages.trace.as_secs_f64() * 1e9 * stats.threads as f64,
-                    (stats.closest_rays + stats.occlusion_rays) as f64,
+                    stats.rays() as f64,
                 ),
                 "rays_per_sample": ratio(
-                    (stats.closest_rays + stats.occlusion_rays) as f64,
+                    stats.rays() as f64,
                     self.film.total_samples() as f64,
                 ),
             },
+            "tracing": tracing::json(&stats.tracing, self.film.total_samples()),
             "most_would_help": self.advice,
         });
         format!("{value:#}\n")

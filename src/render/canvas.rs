@@ -35,8 +35,6 @@ pub(super) struct Tile {
     pub(super) patch: Patch,
     /// One after the last sample that it is to have, if it has not all by then.
     pub(super) goal: u32,
-    /// Rays traced: closest hits and occlusion tests.
-    pub(super) rays: [u64; 2],
 }
 
 impl Canvas {
@@ -69,7 +67,6 @@ impl Canvas {
             Mutex::new(Tile {
                 patch,
                 goal: u32::MAX,
-                rays: [0; 2],
             })
         };
         Canvas {

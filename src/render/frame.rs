@@ -1,6 +1,5 @@
 //! Frames of one scene.
 
-use super::canvas::lock;
 use super::lost::{self, NonFinite};
 use super::metadata::{self, Samples, scene_hash};
 use super::passes::{Deadline, Passes};
@@ -11,10 +10,11 @@ use crate::build::{BuildOptions, BuildTimes, SceneBuilder};
 use crate::film::{Film, Metadata};
 use crate::flat::{FlatScene, PixelFilter};
 use crate::scene::{BackgroundDesc, FilterDesc, SceneDesc};
-use crate::trace::{TraceOptions, Tracer};
+use crate::trace::{Tallies, TileSums, TraceOptions, Tracer};
 use crate::world::{Time, pose};
 use hecs::World;
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// A rendered frame.
@@ -268,7 +268,8 @@ impl Renderer {
         control.expect(pixels * u64::from(piloted_now) + canvas.missing(goal));
         let passes = Passes::new(canvas.done().0, goal, deadline);
         let watch = |spp| watch(spp, start.elapsed());
-        let complete = self.run(scene, &settings.trace, canvas, (passes, control), watch);
+        let (complete, tracing) =
+            self.run(scene, &settings.trace, canvas, (passes, control), watch);
         let all = complete >= goal;
         let mut stats = Stats {
             threads: self.pool.current_num_threads(),
@@ -285,15 +286,11 @@ impl Renderer {
                 Some(_) if mean < settings.spp => Ended::Noise,
                 _ => Ended::Samples,
             },
+            tracing,
             ..Stats::default()
         };
         stats.stages.pilot = piloted;
         stats.stages.trace = start.elapsed() - piloted;
-        for tile in &canvas.tiles {
-            let rays = lock(tile).rays;
-            stats.closest_rays += rays[0];
-            stats.occlusion_rays += rays[1];
-        }
         stats
     }
 
@@ -309,13 +306,15 @@ impl Renderer {
         let options = pilot::options(&settings.trace);
         let canvas = Canvas::new(settings, &Share::default());
         let most = settings.spp;
-        let run =
-            |canvas: &Canvas, passes| self.run(scene, &options, canvas, (passes, control), |_| ());
+        let run = |canvas: &Canvas, passes| {
+            self.run(scene, &options, canvas, (passes, control), |_| ())
+                .0
+        };
         let wanted = (wanted, settings.is_adaptive());
         pilot::ask(wanted, most, settings.size, &canvas, control, deadline, run)
     }
 
-    /// Traces passes on the threads; gives the samples that are complete.
+    /// Traces passes on the threads; gives the samples that are complete, and what the stages cost.
     fn run(
         &self,
         scene: &FlatScene,
@@ -323,13 +322,19 @@ impl Renderer {
         canvas: &Canvas,
         (passes, control): (Passes, &Control),
         watch: impl FnMut(u32) + Send,
-    ) -> u32 {
-        self.pool.install(|| {
+    ) -> (u32, Tallies) {
+        let cost = Mutex::new(Tallies::default());
+        let complete = self.pool.install(|| {
             tiles::run(&canvas.tiles, passes, control, watch, || {
-                let mut tracer = Tracer::new(scene, options);
-                move |rect, samples, sums: &mut _| tracer.trace_tile(rect, samples, sums)
+                let (mut tracer, cost) = (Tracer::new(scene, options), &cost);
+                move |rect, samples, sums: &mut TileSums| {
+                    tracer.trace_tile(rect, samples, sums);
+                    *cost.lock().unwrap_or_else(PoisonError::into_inner) += sums.cost;
+                }
             })
-        })
+        });
+        let cost = cost.into_inner().unwrap_or_else(PoisonError::into_inner);
+        (complete, cost)
     }
 }
 

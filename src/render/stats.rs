@@ -1,5 +1,6 @@
 //! What a render cost.
 
+use crate::trace::Tallies;
 use std::time::Duration;
 
 /// Wall-clock time of each stage.
@@ -50,10 +51,8 @@ pub enum Ended {
 pub struct Stats {
     /// Where the time went.
     pub stages: Stages,
-    /// Closest-hit rays.
-    pub closest_rays: u64,
-    /// Occlusion tests.
-    pub occlusion_rays: u64,
+    /// What the stages of tracing cost; of the image alone, not of its pilot.
+    pub tracing: Tallies,
     /// Bytes of all buffers that tracing read.
     pub bytes: usize,
     /// Threads.
@@ -71,11 +70,17 @@ pub struct Stats {
 }
 
 impl Stats {
+    /// Rays of both kinds.
+    #[must_use]
+    pub fn rays(&self) -> u64 {
+        self.tracing.closest_rays() + self.tracing.occlusion_rays()
+    }
+
     /// Rays of both kinds per second of tracing, in millions.
     #[must_use]
     pub fn mrays_per_second(&self) -> f64 {
         let seconds = self.stages.trace.as_secs_f64();
-        let rays = (self.closest_rays + self.occlusion_rays) as f64;
+        let rays = self.rays() as f64;
         if seconds > 0.0 {
             rays / seconds / 1e6
         } else {

@@ -4,7 +4,7 @@ use super::Control;
 use super::canvas::{Tile, lock};
 use super::passes::{Pass, Passes};
 use crate::film::{Blocks, Patch, Sums, Window};
-use crate::trace::{LostSample, Rect, TileSums};
+use crate::trace::{LostSample, Rect, Tallies, TileSums};
 use std::mem::take;
 use std::ops::Range;
 use std::sync::Mutex;
@@ -52,7 +52,7 @@ fn trace_pass(
     trace: &mut impl FnMut(Rect, Range<u32>, &mut TileSums),
     spare: &mut Sums,
 ) {
-    let Tile { patch, goal, rays } = tile;
+    let Tile { patch, goal } = tile;
     let end = pass.samples.end.min(*goal);
     let rect = rect(patch.window);
     let pixels = u64::from(rect.width) * u64::from(rect.height);
@@ -61,8 +61,6 @@ fn trace_pass(
         let samples = patch.done..end.min(Blocks::next(patch.done));
         let mut sums = lend(patch);
         trace(rect, samples.clone(), &mut sums);
-        rays[0] += sums.rays[0];
-        rays[1] += sums.rays[1];
         take_back(patch, sums);
         patch.advance(samples.end, spare);
         control.add(pixels * samples.len() as u64);
@@ -97,7 +95,7 @@ fn lend(patch: &mut Patch) -> TileSums {
         uv: take(&mut patch.uv),
         prim: take(&mut patch.prim),
         entity: take(&mut patch.entity),
-        rays: [0; 2],
+        cost: Tallies::default(),
     }
 }
 

@@ -42,6 +42,11 @@ impl Shape {
 }
 
 impl Groups {
+    /// How many paths scatter in a way.
+    pub(super) fn count(&self, kind: Scatter) -> u64 {
+        self.by_scatter[kind as usize].len() as u64
+    }
+
     fn clear(&mut self) {
         let lists = self.by_shape.iter_mut().chain(&mut self.by_scatter);
         lists

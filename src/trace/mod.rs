@@ -31,6 +31,7 @@ mod scatter;
 pub mod spawn;
 mod stages;
 mod surface;
+mod tally;
 #[cfg(test)]
 mod test_support;
 pub mod texture;
@@ -45,4 +46,5 @@ pub use path::{Tracer, identity};
 pub use rays::{Hits, Rays};
 pub use replay::replay;
 pub use surface::hit_place;
+pub use tally::{Stage, Tallies, Tally};
 pub use tile::{LostSample, Rect, TileSums};

@@ -7,10 +7,11 @@ use super::opacity::{pass_paths, pass_shadows, random};
 use super::sampler::pixel_key;
 use super::scatter::{Bounce, mis_weight};
 use super::stages::{compact, generate, roulette, sample_bsdf, sample_lights, surface};
-use super::surface::color_by_vertices;
+use super::surface::{color_by_vertices, look_up};
+use super::tally::{Laps, Stage};
 use super::vector::{get, set};
 use super::wave::{WAVE, Wave};
-use super::{Hits, Rect, TileSums, TraceOptions, closest_hit, occluded};
+use super::{Hits, Rect, Tallies, TileSums, TraceOptions, closest_hit, occluded};
 use crate::flat::{FlatScene, Needs, Scatter, Spheres};
 use crate::math::Vec3;
 use std::ops::Range;
@@ -55,6 +56,7 @@ impl<'a> Tracer<'a> {
                 trace_ids(wave, scene, options, rect, sums);
             }
         }
+        let mut laps = Laps::start();
         let group = (WAVE / samples.len().max(1)).clamp(1, WAVE);
         let step = WAVE / group.min(pixels.max(1));
         for first in (0..pixels).step_by(group) {
@@ -63,10 +65,14 @@ impl<'a> Tracer<'a> {
                 let range = start..start.saturating_add(step as u32).min(samples.end);
                 let samples = range.len();
                 start_paths(wave, scene, options, rect, (group.clone(), range));
-                trace_paths(wave, scene, options, &mut sums.rays);
+                let slots = wave.paths.len() as u64;
+                laps.lap(Stage::Camera, slots);
+                trace_paths(wave, scene, options, &mut laps);
                 accumulate(wave, sums, group.clone(), samples, scene.rebase.scale);
+                laps.lap(Stage::Film, slots);
             }
         }
+        sums.cost = laps.tallies;
     }
 }
 
@@ -88,7 +94,7 @@ impl TileSums {
             uv: vec![[0.0; 2]; ids],
             prim: vec![u32::MAX; ids],
             entity: vec![u32::MAX; ids],
-            rays: [0; 2],
+            cost: Tallies::default(),
         }
     }
 }
@@ -118,7 +124,7 @@ pub(super) fn start_paths(
 }
 
 /// The stages of every bounce, until no path is left.
-fn trace_paths(wave: &mut Wave, scene: &FlatScene, options: &TraceOptions, rays: &mut [u64; 2]) {
+fn trace_paths(wave: &mut Wave, scene: &FlatScene, options: &TraceOptions, laps: &mut Laps) {
     for index in 0..=options.max_bounces {
         if wave.paths.len() == 0 {
             return;
@@ -128,40 +134,56 @@ fn trace_paths(wave: &mut Wave, scene: &FlatScene, options: &TraceOptions, rays:
             options,
             index,
         };
-        arrive(wave, bounce, rays);
+        arrive(wave, bounce, laps);
         if index == options.max_bounces {
             return;
         }
-        leave(wave, bounce, rays);
+        leave(wave, bounce, laps);
+        let paths = wave.paths.len() as u64;
         compact(options.isa, wave);
+        laps.lap(Stage::Compact, paths);
     }
 }
 
 /// The first half of a bounce: what the paths meet, and what it emits.
-pub(super) fn arrive(wave: &mut Wave, bounce: Bounce, rays: &mut [u64; 2]) {
+pub(super) fn arrive(wave: &mut Wave, bounce: Bounce, laps: &mut Laps) {
     let Bounce {
         scene,
         options,
         index,
     } = bounce;
     closest_hit(scene, options.isa, &wave.paths.rays, &mut wave.hits);
-    rays[0] += wave.paths.len() as u64;
+    let paths = wave.paths.len() as u64;
+    laps.lap(Stage::ClosestHit, paths);
     if scene.needs.opacity {
         let number = random(options.sampler, index);
-        rays[0] += pass_paths(wave, scene, options.isa, number);
+        let passed = pass_paths(wave, scene, options.isa, number);
+        laps.lap(Stage::Opacity, passed);
     }
     surface(options.isa, wave, scene);
+    laps.lap(Stage::Surface, paths);
+    let missed = wave.groups.missed.len() as u64;
+    if scene.needs.uvs || scene.needs.textures {
+        look_up(wave, scene);
+        laps.lap(Stage::Textures, paths - missed);
+    }
     if scene.needs.vertex_colors {
         color_by_vertices(wave, scene);
+        laps.lap(Stage::VertexColors, paths);
     }
     if index == 0 && options.features {
         record_features(wave, scene);
     }
+    if scene.needs.background || scene.needs.environment {
+        background(wave, bounce);
+        laps.lap(Stage::Background, missed);
+    }
     emission(wave, bounce);
+    laps.lap(Stage::Emission, wave.groups.at_emitters.len() as u64);
 }
 
 /// The second half: what lights send there, and where the paths go on; `wave.alive` says which do.
-pub(super) fn leave(wave: &mut Wave, bounce: Bounce, rays: &mut [u64; 2]) {
+pub(super) fn leave(wave: &mut Wave, bounce: Bounce, laps: &mut Laps) {
     let Bounce {
         scene,
         options,
@@ -169,14 +191,19 @@ pub(super) fn leave(wave: &mut Wave, bounce: Bounce, rays: &mut [u64; 2]) {
     } = bounce;
     if options.nee && scene.needs.lights && (scene.needs.diffuse || scene.needs.plastic) {
         sample_lights(wave, bounce);
-        rays[1] += find_blocked(wave, scene, options);
+        let lit = [Scatter::Diffuse, Scatter::Plastic].map(|kind| wave.groups.count(kind));
+        laps.lap(Stage::Lights, lit[0] + lit[1]);
+        let rays = find_blocked(wave, scene, options);
         add_lights(wave);
+        laps.lap(Stage::Occlusion, rays);
     }
-    for kind in kinds(&scene.needs) {
+    for (kind, stage) in kinds(&scene.needs) {
         sample_bsdf(wave, bounce, kind);
+        laps.lap(stage, wave.groups.count(kind));
     }
     if options.roulette && index + 1 >= ROULETTE_START {
         roulette(wave, bounce);
+        laps.lap(Stage::Roulette, wave.paths.len() as u64);
     }
 }
 
@@ -190,22 +217,22 @@ fn find_blocked(wave: &mut Wave, scene: &FlatScene, options: &TraceOptions) -> u
     shadows.rays.len() as u64
 }
 
-/// The kinds of scattering that the scene has.
-fn kinds(needs: &Needs) -> impl Iterator<Item = Scatter> {
+/// The kinds of scattering that the scene has, with their stages.
+fn kinds(needs: &Needs) -> impl Iterator<Item = (Scatter, Stage)> {
     [
-        (needs.diffuse, Scatter::Diffuse),
-        (needs.mirror, Scatter::Mirror),
-        (needs.glass, Scatter::Glass),
-        (needs.plastic, Scatter::Plastic),
-        (needs.metal, Scatter::Metal),
+        (needs.diffuse, Scatter::Diffuse, Stage::Diffuse),
+        (needs.mirror, Scatter::Mirror, Stage::Mirror),
+        (needs.glass, Scatter::Glass, Stage::Glass),
+        (needs.plastic, Scatter::Plastic, Stage::Plastic),
+        (needs.metal, Scatter::Metal, Stage::Metal),
     ]
     .into_iter()
-    .filter_map(|(needed, kind)| needed.then_some(kind))
+    .filter_map(|(needed, kind, stage)| needed.then_some((kind, stage)))
 }
 
-/// Adds what the hit surfaces emit, and the background where nothing was hit.
-fn emission(wave: &mut Wave, bounce: Bounce) {
-    let Bounce { scene, options, .. } = bounce;
+/// Adds the background where nothing was hit.
+fn background(wave: &mut Wave, bounce: Bounce) {
+    let scene = bounce.scene;
     let background = Vec3::from(scene.background);
     if scene.needs.background {
         for &i in &wave.groups.missed {
@@ -217,6 +244,11 @@ fn emission(wave: &mut Wave, bounce: Bounce) {
     if scene.needs.environment {
         miss(wave, bounce);
     }
+}
+
+/// Adds what the hit surfaces emit.
+fn emission(wave: &mut Wave, bounce: Bounce) {
+    let Bounce { scene, options, .. } = bounce;
     for &i in &wave.groups.at_emitters {
         let i = i as usize;
         let slot = wave.paths.slot[i] as usize;
@@ -351,7 +383,9 @@ fn trace_ids(
         // Half of it is enough to be there.
         pass_paths(wave, scene, options.isa, |_, _, _| 0.5);
     }
-    surface(options.isa, wave, scene);
+    if scene.needs.uvs || scene.needs.textures {
+        look_up(wave, scene);
+    }
     for i in 0..sums.uv.len() {
         let (prim, instance) = (wave.hits.prim[i], wave.hits.instance[i]);
         if prim == Hits::NONE {

@@ -6,6 +6,7 @@
 use super::path::{arrive, identity, leave, start_paths};
 use super::scatter::Bounce;
 use super::stages::compact;
+use super::tally::Laps;
 use super::vector::get;
 use super::wave::Wave;
 use super::{Hits, Rect, TraceOptions};
@@ -125,7 +126,7 @@ pub fn replay(
     let sample = sample.min(u32::MAX - 1);
     let samples = sample..sample + 1;
     start_paths(&mut wave, scene, options, pixel, (0..1, samples));
-    let mut rays = [0; 2];
+    let mut laps = Laps::start();
     let mut vertices = Vec::new();
     for index in 0..=options.max_bounces {
         if wave.paths.len() == 0 {
@@ -139,7 +140,7 @@ pub fn replay(
         let [throughput, dir] =
             [&wave.paths.throughput, &wave.paths.rays.dir].map(|arrays| get(arrays, 0).to_array());
         let pdf = wave.paths.pdf[0];
-        arrive(&mut wave, bounce, &mut rays);
+        arrive(&mut wave, bounce, &mut laps);
         let (from, distance) = wave.leg(0);
         let mut vertex = Vertex {
             from: from.to_array(),
@@ -154,7 +155,7 @@ pub fn replay(
         };
         if index < options.max_bounces {
             let before = ray_bits(&wave);
-            leave(&mut wave, bounce, &mut rays);
+            leave(&mut wave, bounce, &mut laps);
             vertex.light = light_point(&wave);
             vertex.radiance = gathered(&wave);
             vertex.fate = fate(&wave, before);

@@ -37,27 +37,25 @@ pub(super) fn surface<L: BitLanes>(wave: &mut Wave, scene: &FlatScene) {
         write(surfaces, &chunk, &points);
     }
     for chunk in Chunk::all::<L>(&groups.by_shape[Shape::Triangle as usize]) {
-        let points = on_triangles::<L>(|_| &scene.world, hits, &chunk);
+        let points = on_triangles::<L>(|_| &scene.world, scene.needs.smooth_normals, hits, &chunk);
         write(surfaces, &chunk, &points);
     }
     for chunk in Chunk::all::<L>(&groups.by_shape[Shape::Instance as usize]) {
         let points = on_instances::<L>(scene, hits, &chunk);
         write(surfaces, &chunk, &points);
     }
-    if scene.needs.uvs || scene.needs.textures {
-        look_up(surfaces, scene, hits, groups.by_shape.iter().flatten());
-    }
 }
 
-/// Texture coordinates, and the colours of textures.
+/// Texture coordinates, and the colours of textures; of every path that hit something.
 #[inline(never)]
-fn look_up<'a>(
-    surfaces: &mut Surfaces,
-    scene: &FlatScene,
-    hits: &Hits,
-    paths: impl Iterator<Item = &'a u32>,
-) {
-    for &i in paths {
+pub(super) fn look_up(wave: &mut Wave, scene: &FlatScene) {
+    let Wave {
+        hits,
+        surfaces,
+        groups,
+        ..
+    } = wave;
+    for &i in groups.by_shape.iter().flatten() {
         let i = i as usize;
         let uv = coordinates(scene, hits, get(&surfaces.ng, i), i);
         surfaces.uv[0][i] = uv[0];
@@ -108,7 +106,7 @@ pub(super) fn place(scene: &FlatScene, rays: &Rays, hits: &Hits, i: usize) -> Po
     let chunk = Chunk::new::<f32>(&[i as u32]);
     let points = match Shape::of(hits, i) {
         Shape::Sphere => on_spheres::<f32>(&scene.spheres, rays, hits, &chunk),
-        Shape::Triangle => on_triangles::<f32>(|_| &scene.world, hits, &chunk),
+        Shape::Triangle => on_triangles::<f32>(|_| &scene.world, false, hits, &chunk),
         Shape::Instance => on_instances::<f32>(scene, hits, &chunk),
     };
     Point {
@@ -126,10 +124,11 @@ pub fn hit_place(scene: &FlatScene, rays: &Rays, hits: &Hits, i: usize) -> [[f32
     [point.position, point.ng]
 }
 
-/// Interpolates in the own space of each lane's geometry.
+/// Interpolates in the own space of each lane's geometry; normals, if some are smooth.
 #[inline(always)]
 fn on_triangles<'a, L: BitLanes>(
     geometry: impl Fn(usize) -> &'a Geometry,
+    smooth_normals: bool,
     hits: &Hits,
     chunk: &Chunk,
 ) -> Points<L> {
@@ -140,7 +139,9 @@ fn on_triangles<'a, L: BitLanes>(
         let vertices = spawn::triangle_vertices(&geometry.triangles, prim);
         put_lane(&mut corners, lane, vertices.as_flattened());
         let corner = 3 * prim as usize;
-        if let Some(three) = geometry.shading.normals.corner.get(corner..corner + 3) {
+        if smooth_normals
+            && let Some(three) = geometry.shading.normals.corner.get(corner..corner + 3)
+        {
             put_lane(&mut normals, lane, three.as_flattened());
             smooth[lane] = 1.0;
         }
@@ -183,6 +184,7 @@ fn on_instances<L: BitLanes>(scene: &FlatScene, hits: &Hits, chunk: &Chunk) -> P
     let instance = |lane| &scene.instances[chunk.at(&hits.instance, lane) as usize];
     let local = on_triangles::<L>(
         |lane| &scene.local[instance(lane).geometry as usize],
+        scene.needs.smooth_normals,
         hits,
         chunk,
     );

@@ -1,5 +1,7 @@
 //! A tile: the rectangle that one worker traces, and the sums that it leaves.
 
+use super::Tallies;
+
 /// A rectangle of pixels; (0, 0) is the image's top left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rect {
@@ -52,8 +54,8 @@ pub struct TileSums {
     pub prim: Vec<u32>,
     /// Index in the scene file's `entities` of that hit; `u32::MAX` for a miss.
     pub entity: Vec<u32>,
-    /// Rays traced: closest hits and occlusion tests.
-    pub rays: [u64; 2],
+    /// What the last call of [`super::Tracer::trace_tile`] cost.
+    pub cost: Tallies,
 }
 
 impl TileSums {

@@ -26,5 +26,6 @@ mod self_check;
 mod shadows;
 mod sky;
 mod stats;
+mod tallies;
 mod textures;
 mod veils;
