@@ -7,7 +7,7 @@ use super::opacity::{pass_paths, pass_shadows, random};
 use super::sampler::pixel_key;
 use super::scatter::{Bounce, mis_weight};
 use super::stages::{compact, generate, roulette, sample_bsdf, sample_lights, surface};
-use super::surface::{color_by_vertices, look_up};
+use super::surface::{color_by_vertices, look_up, place};
 use super::tally::{Laps, Stage};
 use super::vector::{get, set};
 use super::wave::{WAVE, Wave};
@@ -163,9 +163,9 @@ pub(super) fn arrive(wave: &mut Wave, bounce: Bounce, laps: &mut Laps) {
     surface(options.isa, wave, scene);
     laps.lap(Stage::Surface, paths);
     let missed = wave.groups.missed.len() as u64;
-    if scene.needs.uvs || scene.needs.textures {
-        look_up(wave, scene);
-        laps.lap(Stage::Textures, paths - missed);
+    if scene.needs.textures {
+        let textured = look_up(wave, scene);
+        laps.lap(Stage::Textures, textured);
     }
     if scene.needs.vertex_colors {
         color_by_vertices(wave, scene);
@@ -383,15 +383,12 @@ fn trace_ids(
         // Half of it is enough to be there.
         pass_paths(wave, scene, options.isa, |_, _, _| 0.5);
     }
-    if scene.needs.uvs || scene.needs.textures {
-        look_up(wave, scene);
-    }
     for i in 0..sums.uv.len() {
         let (prim, instance) = (wave.hits.prim[i], wave.hits.instance[i]);
         if prim == Hits::NONE {
             continue;
         }
-        sums.uv[i] = [wave.surfaces.uv[0][i], wave.surfaces.uv[1][i]];
+        sums.uv[i] = place(scene, &wave.paths.rays, &wave.hits, i).uv;
         (sums.prim[i], sums.entity[i]) = identity(scene, prim, instance);
     }
 }

@@ -6,6 +6,7 @@
 use super::path::{arrive, identity, leave, start_paths};
 use super::scatter::Bounce;
 use super::stages::compact;
+use super::surface::place;
 use super::tally::Laps;
 use super::vector::get;
 use super::wave::Wave;
@@ -183,7 +184,7 @@ fn hit_point(wave: &Wave, scene: &FlatScene, distance: f32) -> Option<HitPoint> 
         position: get(&surfaces.position, 0).to_array(),
         ng: get(&surfaces.ng, 0).to_array(),
         ns: get(&surfaces.ns, 0).to_array(),
-        uv: [surfaces.uv[0][0], surfaces.uv[1][0]],
+        uv: place(scene, &wave.paths.rays, hits, 0).uv,
         distance,
         err: hits.err[0],
         entity,

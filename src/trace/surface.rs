@@ -46,30 +46,36 @@ pub(super) fn surface<L: BitLanes>(wave: &mut Wave, scene: &FlatScene) {
     }
 }
 
-/// Texture coordinates, and the colours of textures; of every path that hit something.
+/// Texture coordinates where a material reads a texture, and the colours of those. Returns of how many paths.
 #[inline(never)]
-pub(super) fn look_up(wave: &mut Wave, scene: &FlatScene) {
+pub(super) fn look_up(wave: &mut Wave, scene: &FlatScene) -> u64 {
     let Wave {
         hits,
         surfaces,
         groups,
         ..
     } = wave;
+    let mut count = 0;
     for &i in groups.by_shape.iter().flatten() {
         let i = i as usize;
+        let material = &scene.materials[surfaces.material[i] as usize];
+        let textured = matches!(material.color, ColorSource::Texture { .. });
+        if !textured && material.emission_source.is_none() {
+            continue;
+        }
+        count += 1;
         let uv = coordinates(scene, hits, get(&surfaces.ng, i), i);
         surfaces.uv[0][i] = uv[0];
         surfaces.uv[1][i] = uv[1];
-        let material = &scene.materials[surfaces.material[i] as usize];
-        if material.scatter == Scatter::Nothing {
-            continue;
-        }
-        if let ColorSource::Texture { texture, factor } = material.color {
+        if let ColorSource::Texture { texture, factor } = material.color
+            && material.scatter != Scatter::Nothing
+        {
             let place = Place::of_hit(hits, i, uv);
             let color = Vec3::from(factor) * texture_color(scene, texture, &place);
             set(&mut surfaces.color, i, color);
         }
     }
+    count
 }
 
 #[inline(always)]

@@ -17,7 +17,7 @@ pub enum Stage {
     Opacity,
     /// Places, normals, materials; of rays.
     Surface,
-    /// Texture coordinates and textures; of hits.
+    /// Texture coordinates and textures; of hits on what has some.
     Textures,
     /// Colours at the corners of triangles; of rays.
     VertexColors,

@@ -41,7 +41,7 @@ pub(super) struct Surfaces {
     pub(super) ng: [Vec<f32>; 3],
     /// Unit shading normal on the same side as `ng`.
     pub(super) ns: [Vec<f32>; 3],
-    /// Texture coordinates.
+    /// Texture coordinates, where the material reads a texture.
     pub(super) uv: [Vec<f32>; 2],
     /// Index into the scene's materials.
     pub(super) material: Vec<u32>,
