@@ -21,6 +21,7 @@ pub mod kernels;
 mod light;
 mod opacity;
 pub mod options;
+mod own;
 mod path;
 mod punctual;
 pub mod rays;
@@ -40,8 +41,9 @@ mod vector;
 mod wave;
 
 pub use isa::Isa;
-pub use kernels::{closest_hit, occluded};
+pub use kernels::{Visits, closest_hit, count_closest, count_occluded, occluded};
 pub use options::{Fresnel, Sampler, TraceOptions};
+pub use own::own_rays;
 pub use path::{Tracer, identity};
 pub use rays::{Hits, Rays};
 pub use replay::replay;

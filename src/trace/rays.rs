@@ -60,6 +60,15 @@ impl Rays {
         self.t_max.clear();
     }
 
+    /// Adds other rays at the end.
+    pub fn append(&mut self, other: &Rays) {
+        for axis in 0..3 {
+            self.origin[axis].extend_from_slice(&other.origin[axis]);
+            self.dir[axis].extend_from_slice(&other.dir[axis]);
+        }
+        self.t_max.extend_from_slice(&other.t_max);
+    }
+
     /// Keeps the first n rays.
     pub(super) fn truncate(&mut self, n: usize) {
         for array in self.origin.iter_mut().chain(&mut self.dir) {

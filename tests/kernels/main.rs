@@ -1,6 +1,7 @@
 //! The kernels against each other (instruction sets, trees), against an f64 oracle, and against what geometry says must be hit.
 
 mod agree;
+mod count;
 mod cracks;
 mod exact;
 mod leave;

@@ -47,19 +47,37 @@ pub(super) struct LocalTrees<'a> {
     pub(super) scratch: &'a mut Scratch,
 }
 
-impl<'a> LocalTrees<'a> {
-    /// The tree of an instance.
-    #[inline(always)]
-    fn tree(&self, index: u32, instance: &Instance) -> Tree<'a> {
-        let geometry = &self.scene.local[instance.geometry as usize];
-        Tree {
-            bvh: &geometry.bvh,
-            triangles: &geometry.triangles.blocks,
-            spheres: &[],
-            instance: index,
-            floor: 0.0,
-        }
+/// The tree of an instance, with no hit nearer than `floor`.
+#[inline(always)]
+pub(super) fn tree<'a>(scene: &'a FlatScene, index: u32, floor: f32) -> Tree<'a> {
+    let instance = &scene.instances[index as usize];
+    let geometry = &scene.local[instance.geometry as usize];
+    Tree {
+        bvh: &geometry.bvh,
+        triangles: &geometry.triangles.blocks,
+        spheres: &[],
+        instance: index,
+        floor,
     }
+}
+
+/// A ray in the space of an instance, and where it enters the instance's box; nothing if it does not before `cull`.
+#[inline(always)]
+pub(super) fn enter<L: Lanes>(
+    instance: &Instance,
+    ray: &WalkRay<L>,
+    cull: f32,
+) -> Option<(WalkRay<L>, f32)> {
+    let [min, max] = instance.bounds;
+    let own = ray.box_of(splat(min), splat(max));
+    if L::bits(own.meets(L::splat(cull))) & 1 == 0 {
+        return None;
+    }
+    let [origin, dir] = local(instance, ray.lane(0));
+    let local = WalkRay::new(origin, dir)?;
+    let mut near = [0.0; BLOCK];
+    own.near.store(&mut near);
+    Some((local, near[0]))
 }
 
 impl<L: Walks> InstanceLeaves<L> for LocalTrees<'_> {
@@ -67,21 +85,10 @@ impl<L: Walks> InstanceLeaves<L> for LocalTrees<'_> {
     fn test<const ANY: bool>(&mut self, run: &[u32], ray: &WalkRay<L>, best: &mut Best) -> bool {
         for &index in run {
             let instance = &self.scene.instances[index as usize];
-            let [min, max] = instance.bounds;
-            let own = ray.box_of(splat(min), splat(max));
-            if L::bits(own.meets(L::splat(best.cull()))) & 1 == 0 {
-                continue;
-            }
-            let [origin, dir] = local(instance, ray.lane(0));
-            let Some(local) = WalkRay::new(origin, dir) else {
+            let Some((local, floor)) = enter(instance, ray, best.cull()) else {
                 continue;
             };
-            let mut near = [0.0; BLOCK];
-            own.near.store(&mut near);
-            let tree = Tree {
-                floor: near[0],
-                ..self.tree(index, instance)
-            };
+            let tree = tree(self.scene, index, floor);
             let (stack, root) = (&mut self.scratch.stack, tree.bvh.root);
             let found =
                 L::walk::<_, true, false, ANY>(&tree, root, &local, &mut NoInstances, stack, best);
@@ -121,7 +128,7 @@ impl<L: Walks> InstanceLeaves<L> for LocalTrees<'_> {
                 None
             };
             if let Some(local) = local {
-                let tree = self.tree(index, instance);
+                let tree = tree(self.scene, index, 0.0);
                 let mut inside = best.only(met);
                 L::walk_packet::<_, true, false, ANY>(
                     &tree,

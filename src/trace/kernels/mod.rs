@@ -22,6 +22,7 @@
 
 mod batch;
 pub(crate) mod bound;
+mod count;
 mod entries;
 mod group;
 mod instances;
@@ -35,6 +36,7 @@ mod stream;
 pub(crate) mod triangle;
 mod walk;
 
+pub use count::{Visits, count_closest, count_occluded};
 pub use triangle::t_error_bound;
 
 use super::{Hits, Isa, Rays};
