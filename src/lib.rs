@@ -22,7 +22,7 @@
 //! | [`trace`] | `&FlatScene` | sums of radiance samples of a tile; infallible loops over SoA path state | hecs, files, rayon |
 //! | [`film`] | sums | statistics, tone mapping, writers; films that still grow, as files | scenes |
 //! | [`render`] | world, settings | drives build → trace → film over tiles and frames | |
-//! | [`measure`] | images and references; subjects, rays and arms; a world at other sizes and places | error statistics, FLIP, heat maps; traversal timed and judged; what exactness costs; what goes wrong first; what dials cost and err | what error is too much |
+//! | [`measure`] | images and references; subjects, rays and arms; a world at other sizes and places | error statistics, FLIP, heat maps; traversal timed and judged; what exactness costs; what goes wrong first; what a scene's own paths cost; what dials cost and err | what error is too much |
 //! | [`check`] | a `SceneDesc`, its world and store | warnings of what is probably not meant, all at once | pixels |
 //! | [`author`] | a mesh or a glTF file | a `SceneDesc`: turntable, convert | the world |
 //! | [`diag`] | | **data only**: a diagnostic | everything else |

@@ -6,13 +6,14 @@
 //! [`fall`] follows an image's error while it is rendered.
 //!
 //! [`referee`] asks the same of what rays hit, [`exactness`] what being right costs, and [`stability`] what becomes of a
-//! scene at other sizes and places. [`tune`] measures what a scene's dials cost and err.
+//! scene at other sizes and places. [`cost`] tells what a scene's own paths cost, [`tune`] what its dials cost and err.
 //!
 //! Deliberately absent: the arguments and words of `luxel compare`, the verdict on what error is too much, and any
 //! alignment, scaling or exposure that would make images more alike than they are.
 
 pub mod arms;
 pub mod bench;
+pub mod cost;
 mod errors;
 pub mod exactness;
 pub mod fall;
