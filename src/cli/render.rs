@@ -114,9 +114,9 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
         write: writing.elapsed(),
         isa: args.dials.isa().level().to_string(),
         tree: args.dials.tree.name(),
-        advice: String::new(),
+        advice: None,
     };
-    account.advice = advice::of(&account, args.dials.tree.into());
+    account.advice = advice::of(&account, renderer.settings());
     progress.finished(&Finished {
         frame: args.frame,
         path: &account.output,
@@ -140,7 +140,9 @@ fn tell(args: &RenderArgs, output: &Output, account: &Account<'_>) -> Result<(),
         print_result(format!("{output}\n").as_bytes())?;
     }
     say(&account.line());
-    say(&format!("what would help most: {}", account.advice));
+    if let Some(advice) = &account.advice {
+        say(&format!("what would help most: {advice}"));
+    }
     if let Some(doubt) = account.doubt() {
         say(&format!("warning: {doubt}"));
     }

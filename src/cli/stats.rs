@@ -35,8 +35,8 @@ pub(crate) struct Account<'a> {
     pub(crate) isa: String,
     /// How well the tree was built.
     pub(crate) tree: &'static str,
-    /// The one change that would help most.
-    pub(crate) advice: String,
+    /// The one change that would help most, if one would.
+    pub(crate) advice: Option<String>,
 }
 
 /// Says how many samples were not finite, and which some of them are; `None` for none.

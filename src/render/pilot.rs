@@ -37,6 +37,15 @@ pub struct Verdict {
     pub pilot: u32,
 }
 
+impl Verdict {
+    /// Samples per pixel of the pilot that may say so many, and so many for some part of the image.
+    #[must_use]
+    pub fn pilot_for(spp: u32, longest: u32) -> u32 {
+        let least = spp.div_ceil(PART).max(longest.div_ceil(PART_OF_LONGEST));
+        least.div_ceil(SHORTEST).max(1).next_power_of_two() * SHORTEST
+    }
+}
+
 /// The pilot's own numbers: another seed, and nothing beside the radiance.
 pub(super) fn options(options: &TraceOptions) -> TraceOptions {
     TraceOptions {
@@ -84,9 +93,8 @@ pub(super) fn ask(
             pilot: complete,
         };
         let longest = goals.iter().copied().max().unwrap_or(0);
-        let long = goal >= spp.div_ceil(PART) && goal >= longest.div_ceil(PART_OF_LONGEST);
         // Cut off by the time, or by Ctrl-C; or long enough.
-        if complete < goal || long {
+        if complete < goal || goal >= Verdict::pilot_for(spp, longest) {
             return (verdict, goals);
         }
         pilot = goal;

@@ -39,7 +39,7 @@ impl Settings {
 
     /// Side of what has one number of samples, where that number is not the same everywhere: small enough to follow edges, and
     /// enough pixels to tell its error.
-    pub(super) const CELL: u32 = 8;
+    pub const CELL: u32 = 8;
 
     /// Whether parts of the image may have different numbers of samples.
     #[must_use]
