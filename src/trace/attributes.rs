@@ -2,7 +2,7 @@
 //! colours, emission and opacity. Read only by what asks for it.
 
 use super::texture::{eval_alpha, eval_texture};
-use super::{Hits, Rays, surface};
+use super::{Hits, Rays, cut, surface};
 use crate::flat::{
     ColorSource, Coverage, FlatScene, LightPlace, Material, Opacity, Scatter, Shading, Spheres,
     Texture,
@@ -118,8 +118,8 @@ pub(super) fn vertex_color(scene: &FlatScene, place: &Place) -> Vec3 {
 #[inline(always)]
 pub(super) fn emitted(scene: &FlatScene, material: &Material, place: &Place) -> Vec3 {
     match &material.emission_source {
-        None => Vec3::from(material.emission),
-        Some(source) => emitted_from(scene, material, source, place),
+        Some(source) if cut::TEXTURES => emitted_from(scene, material, source, place),
+        _ => Vec3::from(material.emission),
     }
 }
 

@@ -3,7 +3,7 @@
 use super::chunk::{Chunk, WIDEST};
 use super::sampler::{Pair, sample_pairs};
 use super::vector::{V3, concentric_disk, sin_cos_turns};
-use super::{Sampler, wave::Wave};
+use super::{Sampler, cut, wave::Wave};
 use crate::flat::{Camera, PixelFilter};
 use crate::math::lanes::BitLanes;
 use crate::math::{Vec3, ln};
@@ -26,7 +26,7 @@ pub(super) fn generate<L: BitLanes>(wave: &mut Wave, camera: &Camera, sampler: S
         let y = chunk.lanes::<L>(&slots.center[1]) + dy;
         let through = through(camera, x, y);
         let origin = V3::splat(camera.origin);
-        if camera.aperture_radius == 0.0 {
+        if !cut::LENS || camera.aperture_radius == 0.0 {
             chunk.put_vector(origin, &mut paths.rays.origin);
             chunk.put_vector(through.unit(), &mut paths.rays.dir);
             continue;

@@ -14,6 +14,7 @@
 mod attributes;
 mod camera;
 mod chunk;
+mod cut;
 pub mod fresnel;
 mod groups;
 pub mod isa;

@@ -11,7 +11,7 @@ use super::surface::{color_by_vertices, look_up, place};
 use super::tally::{Laps, Stage};
 use super::vector::{get, set};
 use super::wave::{WAVE, Wave};
-use super::{Hits, Rect, Tallies, TileSums, TraceOptions, closest_hit, occluded};
+use super::{Hits, Rect, Tallies, TileSums, TraceOptions, closest_hit, cut, occluded};
 use crate::flat::{FlatScene, Needs, Scatter, Spheres};
 use crate::math::Vec3;
 use std::ops::Range;
@@ -155,7 +155,7 @@ pub(super) fn arrive(wave: &mut Wave, bounce: Bounce, laps: &mut Laps) {
     closest_hit(scene, options.isa, &wave.paths.rays, &mut wave.hits);
     let paths = wave.paths.len() as u64;
     laps.lap(Stage::ClosestHit, paths);
-    if scene.needs.opacity {
+    if cut::OPACITY && scene.needs.opacity {
         let number = random(options.sampler, index);
         let passed = pass_paths(wave, scene, options.isa, number);
         laps.lap(Stage::Opacity, passed);
@@ -163,11 +163,11 @@ pub(super) fn arrive(wave: &mut Wave, bounce: Bounce, laps: &mut Laps) {
     surface(options.isa, wave, scene);
     laps.lap(Stage::Surface, paths);
     let missed = wave.groups.missed.len() as u64;
-    if scene.needs.textures {
+    if cut::TEXTURES && scene.needs.textures {
         let textured = look_up(wave, scene);
         laps.lap(Stage::Textures, textured);
     }
-    if scene.needs.vertex_colors {
+    if cut::VERTEX_COLORS && scene.needs.vertex_colors {
         color_by_vertices(wave, scene);
         laps.lap(Stage::VertexColors, paths);
     }
@@ -209,7 +209,7 @@ pub(super) fn leave(wave: &mut Wave, bounce: Bounce, laps: &mut Laps) {
 
 /// Finds which shadow rays something blocks; returns how many rays that took.
 fn find_blocked(wave: &mut Wave, scene: &FlatScene, options: &TraceOptions) -> u64 {
-    if scene.needs.opacity {
+    if cut::OPACITY && scene.needs.opacity {
         return pass_shadows(wave, scene, options.isa);
     }
     let shadows = &mut wave.shadows;
@@ -221,10 +221,14 @@ fn find_blocked(wave: &mut Wave, scene: &FlatScene, options: &TraceOptions) -> u
 fn kinds(needs: &Needs) -> impl Iterator<Item = (Scatter, Stage)> {
     [
         (needs.diffuse, Scatter::Diffuse, Stage::Diffuse),
-        (needs.mirror, Scatter::Mirror, Stage::Mirror),
-        (needs.glass, Scatter::Glass, Stage::Glass),
-        (needs.plastic, Scatter::Plastic, Stage::Plastic),
-        (needs.metal, Scatter::Metal, Stage::Metal),
+        (cut::MIRROR && needs.mirror, Scatter::Mirror, Stage::Mirror),
+        (cut::GLASS && needs.glass, Scatter::Glass, Stage::Glass),
+        (
+            cut::PLASTIC && needs.plastic,
+            Scatter::Plastic,
+            Stage::Plastic,
+        ),
+        (cut::METAL && needs.metal, Scatter::Metal, Stage::Metal),
     ]
     .into_iter()
     .filter_map(|(needed, kind, stage)| needed.then_some((kind, stage)))
@@ -234,14 +238,14 @@ fn kinds(needs: &Needs) -> impl Iterator<Item = (Scatter, Stage)> {
 fn background(wave: &mut Wave, bounce: Bounce) {
     let scene = bounce.scene;
     let background = Vec3::from(scene.background);
-    if scene.needs.background {
+    if cut::BACKGROUND && scene.needs.background {
         for &i in &wave.groups.missed {
             let slot = wave.paths.slot[i as usize] as usize;
             let throughput = get(&wave.paths.throughput, i as usize);
             wave.slots.add(slot, throughput * background);
         }
     }
-    if scene.needs.environment {
+    if cut::ENVIRONMENT && scene.needs.environment {
         miss(wave, bounce);
     }
 }
@@ -379,7 +383,7 @@ fn trace_ids(
         wave.paths.push(Vec3::from(scene.camera.origin), dir, pixel);
     }
     closest_hit(scene, options.isa, &wave.paths.rays, &mut wave.hits);
-    if scene.needs.opacity {
+    if cut::OPACITY && scene.needs.opacity {
         // Half of it is enough to be there.
         pass_paths(wave, scene, options.isa, |_, _, _| 0.5);
     }

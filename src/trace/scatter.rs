@@ -15,7 +15,7 @@ use super::sampler::{Pair, sample_pairs};
 use super::spawn::lanes::offset_origin;
 use super::vector::{V3, cosine_hemisphere, reflect};
 use super::wave::{Shadows, Wave};
-use super::{Fresnel, TraceOptions};
+use super::{Fresnel, TraceOptions, cut};
 use crate::flat::{FlatScene, Scatter};
 use crate::math::lanes::{BitLanes, Lanes};
 use std::f32::consts::FRAC_1_PI;
@@ -260,7 +260,7 @@ fn sample_light<L: BitLanes>(
     if bounce.options.mis {
         weight = mis_weight(light.pdf, share * cos * per_pi);
     }
-    if light.punctual != 0 {
+    if cut::PUNCTUAL && light.punctual != 0 {
         weight = L::select(L::mask(light.punctual), L::splat(1.0), weight);
     }
     let throughput: V3<L> = chunk.vector(&columns.throughput);

@@ -9,7 +9,7 @@ use super::chunk::{Chunk, WIDEST};
 use super::groups::{Shape, group};
 use super::vector::{V3, get, set};
 use super::wave::{Surfaces, Wave};
-use super::{Hits, Rays, spawn};
+use super::{Hits, Rays, cut, spawn};
 use crate::flat::{ColorSource, FlatScene, Geometry, Scatter, Spheres};
 use crate::math::lanes::BitLanes;
 use crate::math::{Vec3, acos, atan2};
@@ -37,12 +37,19 @@ pub(super) fn surface<L: BitLanes>(wave: &mut Wave, scene: &FlatScene) {
         write(surfaces, &chunk, &points);
     }
     for chunk in Chunk::all::<L>(&groups.by_shape[Shape::Triangle as usize]) {
-        let points = on_triangles::<L>(|_| &scene.world, scene.needs.smooth_normals, hits, &chunk);
+        let points = on_triangles::<L>(
+            |_| &scene.world,
+            cut::SMOOTH_NORMALS && scene.needs.smooth_normals,
+            hits,
+            &chunk,
+        );
         write(surfaces, &chunk, &points);
     }
-    for chunk in Chunk::all::<L>(&groups.by_shape[Shape::Instance as usize]) {
-        let points = on_instances::<L>(scene, hits, &chunk);
-        write(surfaces, &chunk, &points);
+    if cut::INSTANCES {
+        for chunk in Chunk::all::<L>(&groups.by_shape[Shape::Instance as usize]) {
+            let points = on_instances::<L>(scene, hits, &chunk);
+            write(surfaces, &chunk, &points);
+        }
     }
 }
 
@@ -190,7 +197,7 @@ fn on_instances<L: BitLanes>(scene: &FlatScene, hits: &Hits, chunk: &Chunk) -> P
     let instance = |lane| &scene.instances[chunk.at(&hits.instance, lane) as usize];
     let local = on_triangles::<L>(
         |lane| &scene.local[instance(lane).geometry as usize],
-        scene.needs.smooth_normals,
+        cut::SMOOTH_NORMALS && scene.needs.smooth_normals,
         hits,
         chunk,
     );

@@ -15,6 +15,7 @@ use crate::flat::{Child, FlatScene, Spheres};
 use crate::math::lanes::{Lanes, baseline};
 #[cfg(target_arch = "x86_64")]
 use crate::math::lanes::{avx2 as avx2_lanes, avx512 as avx512_lanes};
+use crate::trace::cut;
 use crate::trace::isa::Level;
 use crate::trace::{Hits, Isa, Rays};
 use std::cell::RefCell;
@@ -251,6 +252,6 @@ fn holds(scene: &FlatScene) -> (bool, bool, bool) {
     (
         !scene.world.triangles.blocks.is_empty(),
         !scene.spheres.blocks.is_empty(),
-        !scene.world.bvh.instance_order.is_empty(),
+        cut::INSTANCES && !scene.world.bvh.instance_order.is_empty(),
     )
 }

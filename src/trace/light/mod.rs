@@ -9,6 +9,7 @@ mod sphere;
 
 use super::attributes::light_radiance;
 use super::chunk::WIDEST;
+use super::cut;
 use super::punctual::sample_punctual;
 use super::vector::{V3, unit};
 use crate::flat::{FlatScene, LightTriangles, Lights, Spheres};
@@ -137,10 +138,11 @@ fn sample_light(
     let (i, triangles) = (chosen - lights.spheres.len(), &lights.triangles);
     if i >= triangles.area.len() {
         return match &scene.environment {
-            Some(sky) if lights.environment && chosen + 1 == lights.len() => {
+            Some(sky) if cut::ENVIRONMENT && lights.environment && chosen + 1 == lights.len() => {
                 sample_environment(sky, lights.share(chosen), u)
             }
-            _ => sample_punctual(lights, from, chosen),
+            _ if cut::PUNCTUAL => sample_punctual(lights, from, chosen),
+            _ => None,
         };
     }
     let mut sample = sample_triangle(triangles, from, i, u, total)?;
