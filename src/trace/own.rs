@@ -19,7 +19,7 @@ pub fn own_rays(
     samples: Range<u32>,
 ) -> [Rays; 2] {
     let [mut closest, mut occlusion] = [Rays::default(), Rays::default()];
-    let mut wave = Wave::default();
+    let mut wave = Wave::new(scene);
     let pixels = rect.width as usize * rect.height as usize;
     start_paths(&mut wave, scene, options, rect, (0..pixels, samples));
     let mut laps = Laps::start();

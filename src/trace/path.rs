@@ -35,7 +35,7 @@ impl<'a> Tracer<'a> {
         Tracer {
             scene,
             options,
-            wave: Wave::default(),
+            wave: Wave::new(scene),
         }
     }
 

@@ -117,7 +117,7 @@ pub fn replay(
     (x, y): (u32, u32),
     sample: u32,
 ) -> Replay {
-    let mut wave = Wave::default();
+    let mut wave = Wave::new(scene);
     let pixel = Rect {
         x,
         y,

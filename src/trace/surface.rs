@@ -24,7 +24,7 @@ struct Points<L> {
 /// Fills `wave.surfaces` for every path that hit something, and groups the paths.
 #[inline(always)]
 pub(super) fn surface<L: BitLanes>(wave: &mut Wave, scene: &FlatScene) {
-    group(wave, scene);
+    group::<L>(wave, scene);
     let Wave {
         paths,
         hits,

@@ -1,9 +1,10 @@
 //! The wave: a batch of paths in SoA path state, all at the same bounce.
 
 use super::chunk::WIDEST;
-use super::groups::Groups;
+use super::groups::{self, Glances, Groups};
 use super::vector::{V3, get, set};
 use super::{Hits, Rays, opacity::Through};
+use crate::flat::FlatScene;
 use crate::math::Vec3;
 use crate::math::lanes::{BitLanes, Words};
 
@@ -84,11 +85,20 @@ pub(super) struct Wave {
     pub(super) slots: Slots,
     pub(super) through: Through,
     pub(super) groups: Groups,
+    pub(super) glances: Glances,
     /// Whether path i goes on.
     pub(super) alive: Vec<bool>,
 }
 
 impl Wave {
+    /// Empty buffers for the paths of a scene.
+    pub(super) fn new(scene: &FlatScene) -> Wave {
+        Wave {
+            glances: groups::glances(scene),
+            ..Wave::default()
+        }
+    }
+
     /// Where path i last scattered, and how far from there its hit is.
     pub(super) fn leg(&self, i: usize) -> (Vec3, f32) {
         let (origin, t) = (get(&self.paths.rays.origin, i), self.hits.t[i]);
