@@ -41,10 +41,10 @@ fn ball(size: f64) -> String {
 }
 
 /// Its upper half, large in the frame, lit by a point from the side of the camera; a middling colour at every size.
-fn picture(size: f64) -> Vec<f64> {
+fn picture(size: f64, test: &str) -> Vec<f64> {
     const SPP: u32 = 16;
     let at = |x: f64| x * size;
-    let stage = Stage::new(&format!("acne_{size}")).file("ball.obj", &ball(size)).scene(&format!(
+    let stage = Stage::new(&format!("acne_{test}_{size}")).file("ball.obj", &ball(size)).scene(&format!(
         r#"camera: (at: (0, {}, {}), look_at: (0, {}, 0), vfov_deg: 16), render: (size: ({SIZE}, {SIZE}), filter: Box),
         entities: [(shape: Mesh("ball.obj")),
             (light: Point(intensity: ({e}, {e}, {e})), transform: (translate: ({}, {}, {})))]"#,
@@ -81,9 +81,9 @@ fn specks(picture: &[f64]) -> (usize, usize) {
 
 #[test]
 fn tiny_and_huge_balls_have_no_acne() {
-    let natural = picture(1.0);
+    let natural = picture(1.0, "sizes");
     for size in [1.0, 0.02, 0.0203, 1000.0, 1017.3] {
-        let found = picture(size);
+        let found = picture(size, "sizes");
         let (lit, specks) = specks(&found);
         assert!(
             lit > SIZE * SIZE / 3,
@@ -103,7 +103,7 @@ fn tiny_and_huge_balls_have_no_acne() {
 /// The count of specks sees them.
 #[test]
 fn specks_are_seen() {
-    let mut found = picture(1.0);
+    let mut found = picture(1.0, "specks");
     let brightest = (0..found.len()).max_by(|a, b| found[*a].total_cmp(&found[*b]));
     found[brightest.expect("pixels")] *= 0.5;
     assert_eq!(specks(&found).1, 1);
