@@ -136,6 +136,7 @@ fn load(path: &Path) -> Result<(), Box<dyn Error>> {
         background: [1.0; 3],
         uv_aov: true,
         fresnel: Fresnel::Exact,
+        caustics: false,
     };
     let (scene, _) =
         SceneBuilder::new(&spawned.world, &spawned.assets, options).build(&spawned.world, 0);

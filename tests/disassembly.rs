@@ -200,8 +200,8 @@ fn entries_run_at_their_own_width() {
             }
         }
     }
-    // Generate, surface, sample light, sample bsdf, roulette, compact.
-    let stages = 6;
+    // Generate, surface, sample light, sample chains, sample bsdf, roulette, compact.
+    let stages = 7;
     // Closest hit and occlusion: by spheres outside the tree; by a tree of triangles, of spheres, of everything, with the
     // walk of a ray and, with AVX2, of a packet; in instances, a walk of triangles likewise.
     for (level, entries) in [

@@ -89,6 +89,7 @@ fn check_scene(name: &str, size: (u32, u32), bounces: u32) {
     let options = TraceOptions {
         max_bounces: bounces,
         seed: 5,
+        caustics: true,
         ..TraceOptions::default()
     };
     let settings = Settings {
@@ -147,7 +148,7 @@ fn check_path(path: &Replay, bounces: u32) {
         );
         let brought = vertex.light.as_ref().filter(|light| !light.blocked);
         let added = brought.map_or([0.0; 3], |light| light.radiance);
-        let sum = [0, 1, 2].map(|k| vertex.emitted[k] + added[k]);
+        let sum = [0, 1, 2].map(|k| vertex.emitted[k] + added[k] + vertex.caustic[k]);
         assert_eq!(vertex.radiance, sum, "{vertex:?}");
     }
     for pair in path.vertices.windows(2) {

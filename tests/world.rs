@@ -24,6 +24,7 @@ fn options() -> BuildOptions {
         background: [0.0; 3],
         uv_aov: true,
         fresnel: Fresnel::Exact,
+        caustics: false,
     }
 }
 

@@ -82,10 +82,18 @@ pub fn buffer_bytes(scene: &FlatScene) -> Vec<BufferBytes> {
         buffer("light triangle places", &triangles.place),
         buffer("punctual lights", &scene.lights.punctual),
         buffer("light weights", &scene.lights.cumulative),
+        BufferBytes {
+            name: "chains",
+            len: scene.chains.len(),
+            bytes: scene.chains.len() * CHAIN,
+        },
     ];
     buffers.retain(|b| b.len > 0);
     buffers
 }
+
+/// A key and three rows of four.
+const CHAIN: usize = size_of::<u32>() + 3 * size_of::<[f64; 4]>();
 
 /// Three vectors, a colour and an area.
 const LIGHT_TRIANGLE: usize = 4 * size_of::<[f32; 3]>() + size_of::<f32>();

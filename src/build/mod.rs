@@ -12,6 +12,7 @@
 pub mod bvh;
 mod bytes;
 mod camera;
+mod chains;
 mod environment;
 mod extract;
 mod flatten;
@@ -61,6 +62,8 @@ pub struct BuildOptions {
     pub uv_aov: bool,
     /// Reflectance of dielectrics, for the mean that a plastic keeps inside.
     pub fresnel: Fresnel,
+    /// Whether ways of light by and through specular spheres are looked for.
+    pub caustics: bool,
 }
 
 /// What the steps of one build took, and what came out.
@@ -161,6 +164,7 @@ impl SceneBuilder {
             materials: flat.materials,
             textures: flat.textures,
             lights: flat.lights,
+            chains: Default::default(),
             background: self.options.background,
             environment: flat.environment,
             rebase: self.rebase,
@@ -169,6 +173,9 @@ impl SceneBuilder {
         };
         scene.spheres.blocks = built.sphere_blocks;
         scene.needs = needs::needs(&scene);
+        if self.options.caustics {
+            scene.chains = chains::chains(&scene);
+        }
         let times = BuildTimes {
             pose: Duration::ZERO,
             extract: extracting,

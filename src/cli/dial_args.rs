@@ -52,6 +52,10 @@ pub(crate) struct DialArgs {
     /// Weigh light and material samples against each other (multiple importance sampling)
     #[arg(long, value_enum, default_value_t = Switch::On)]
     pub(crate) mis: Switch,
+    /// Also sample lamps through and by balls of glass, mirror and metal: less noise where their caustics are seen, for
+    /// about an eighth more time
+    #[arg(long, value_enum, default_value_t = Switch::Off)]
+    pub(crate) caustics: Switch,
     /// With --noise, give each part of the image as many samples as it needs; off, all of it the same
     #[arg(long, value_enum, default_value_t = Switch::On)]
     pub(crate) adaptive: Switch,
@@ -91,6 +95,7 @@ impl DialArgs {
                 sampler: self.sampler.into(),
                 nee: self.nee.is_on(),
                 mis: self.mis.is_on(),
+                caustics: self.caustics.is_on(),
                 roulette: self.roulette.is_on(),
                 fresnel: self.fresnel.into(),
                 isa: self.isa(),

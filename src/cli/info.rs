@@ -166,6 +166,7 @@ fn command(metadata: &Metadata, aovs: &[Aov], output: &str, share: &str) -> Stri
         ("sampler", "--sampler", "sobol"),
         ("nee", "--nee", "on"),
         ("mis", "--mis", "on"),
+        ("caustics", "--caustics", "off"),
         ("roulette", "--roulette", "on"),
         ("fresnel", "--fresnel", "exact"),
         ("exposure", "--exposure", "0"),

@@ -102,6 +102,11 @@ impl Told<'_> {
         line("so far", vector(vertex.emitted));
         if let Some(light) = &vertex.light {
             line("light", self.light(light));
+        }
+        if vertex.caustic != [0.0; 3] {
+            line("caustic", format!("brings {}", vector(vertex.caustic)));
+        }
+        if vertex.radiance != vertex.emitted || vertex.light.is_some() {
             line("so far", vector(vertex.radiance));
         }
         let fate = match vertex.fate {

@@ -7,6 +7,7 @@
 
 pub mod bvh;
 pub mod camera;
+pub mod chains;
 pub mod environment;
 pub mod geometry;
 pub mod lights;
@@ -18,6 +19,7 @@ pub mod triangles;
 
 pub use bvh::{Bvh, Child, LinearNode};
 pub use camera::{Camera, PixelFilter};
+pub use chains::{Bounces, Chains};
 pub use environment::{Environment, EnvironmentTable};
 pub use geometry::{Geometry, Instance, Normals, ObjectId, Shading};
 pub use lights::{LightPlace, LightTriangles, Lights, Punctual};
@@ -58,6 +60,8 @@ pub struct FlatScene {
     pub textures: Vec<Texture>,
     /// Everything that emits, except a background that is the same everywhere.
     pub lights: Lights,
+    /// Ways of light by and through specular spheres.
+    pub chains: Chains,
     /// Radiance of rays that hit nothing, the same everywhere.
     pub background: [f32; 3],
     /// Radiance of rays that hit nothing by direction, instead.

@@ -354,5 +354,6 @@ fn build_options(desc: &SceneDesc, settings: &Settings) -> BuildOptions {
         },
         uv_aov: settings.trace.ids,
         fresnel: settings.trace.fresnel,
+        caustics: settings.trace.caustics,
     }
 }

@@ -62,6 +62,9 @@ pub(super) fn metadata(
     metadata.push("sampler", sampler);
     metadata.push("nee", switch(dials.nee));
     metadata.push("mis", switch(dials.mis));
+    if dials.caustics {
+        metadata.push("caustics", "on");
+    }
     metadata.push("roulette", switch(dials.roulette));
     let fresnel = match dials.fresnel {
         Fresnel::Exact => "exact",

@@ -13,6 +13,7 @@
 
 mod attributes;
 mod camera;
+mod chain;
 mod chunk;
 mod cut;
 pub mod fresnel;

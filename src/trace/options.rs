@@ -26,6 +26,8 @@ pub struct TraceOptions {
     pub nee: bool,
     /// Weigh light and bsdf samples by the power heuristic; off: lights by next-event estimation alone, where it can.
     pub mis: bool,
+    /// Sample lamps through and by specular spheres, as part of next-event estimation with weights.
+    pub caustics: bool,
     /// Russian roulette.
     pub roulette: bool,
     /// Reflectance of dielectrics.
@@ -46,6 +48,7 @@ impl Default for TraceOptions {
             sampler: Sampler::Sobol,
             nee: true,
             mis: true,
+            caustics: false,
             roulette: true,
             fresnel: Fresnel::Exact,
             isa: Isa::best(),

@@ -2,6 +2,7 @@
 
 use super::attributes::{Place, emitted};
 use super::camera::image_direction;
+use super::chain;
 use super::light::{Seen, light_pdf, see, towards};
 use super::opacity::{pass_paths, pass_shadows, random};
 use super::sampler::pixel_key;
@@ -121,6 +122,10 @@ pub(super) fn start_paths(
         }
     }
     generate(options.isa, wave, &scene.camera, options.sampler);
+    if chain::wanted(scene, options) {
+        let n = wave.paths.len();
+        wave.paths.record.start(n);
+    }
 }
 
 /// The stages of every bounce, until no path is left.
@@ -196,6 +201,10 @@ pub(super) fn leave(wave: &mut Wave, bounce: Bounce, laps: &mut Laps) {
         let rays = find_blocked(wave, scene, options);
         add_lights(wave);
         laps.lap(Stage::Occlusion, rays);
+        if chain::wanted(scene, options) {
+            let rays = chain::trace(wave, bounce);
+            laps.lap(Stage::Caustics, rays);
+        }
     }
     for (kind, stage) in kinds(&scene.needs) {
         sample_bsdf(wave, bounce, kind);
@@ -274,6 +283,7 @@ fn emission(wave: &mut Wave, bounce: Bounce) {
             let (from, t) = wave.leg(i);
             light_pdf(scene, from, (dir, t), (wave.hits.prim[i], ng), mean)
         });
+        let weight = weight * chain::shared(scene, options, wave, i);
         wave.slots.add(slot, throughput * emitted * weight);
     }
 }

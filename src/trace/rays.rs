@@ -77,6 +77,14 @@ impl Rays {
         self.t_max.truncate(n);
     }
 
+    /// Moves ray `from` to the place of another.
+    pub(super) fn keep(&mut self, from: usize, to: usize) {
+        for array in self.origin.iter_mut().chain(&mut self.dir) {
+            array[to] = array[from];
+        }
+        self.t_max[to] = self.t_max[from];
+    }
+
     /// A copy of some of them.
     #[must_use]
     pub fn part(&self, range: std::ops::Range<usize>) -> Rays {

@@ -40,7 +40,9 @@ pub struct Vertex {
     pub emitted: [f32; 3],
     /// The light that was sampled here.
     pub light: Option<LightPoint>,
-    /// Radiance gathered so far, with that of the light sample.
+    /// What light that is sampled through or by a specular sphere brings; 0 where none is.
+    pub caustic: [f32; 3],
+    /// Radiance gathered so far, with that of the light sample and of the caustic.
     pub radiance: [f32; 3],
     /// What becomes of the path.
     pub fate: Fate,
@@ -151,6 +153,7 @@ pub fn replay(
             hit: hit_point(&wave, scene, distance),
             emitted: gathered(&wave),
             light: None,
+            caustic: [0.0; 3],
             radiance: gathered(&wave),
             fate: Fate::Spent,
         };
@@ -158,6 +161,9 @@ pub fn replay(
             let before = ray_bits(&wave);
             leave(&mut wave, bounce, &mut laps);
             vertex.light = light_point(&wave);
+            if !wave.reached.radiance[0].is_empty() {
+                vertex.caustic = get(&wave.reached.radiance, 0).to_array();
+            }
             vertex.radiance = gathered(&wave);
             vertex.fate = fate(&wave, before);
             compact(options.isa, &mut wave);

@@ -24,6 +24,10 @@ pub(super) enum Pair {
     Direction(u32),
     /// Roulette; the second is not used.
     Roulette(u32),
+    /// Which chain to a light, and which light.
+    Chain(u32),
+    /// Place on the light of a chain.
+    ChainLight(u32),
     /// Whether a surface is there, at a bounce after so many that were not; the second is not used.
     Opacity(u32, u32),
 }
@@ -32,7 +36,10 @@ pub(super) enum Pair {
 const CAMERA_PAIRS: u32 = 2;
 const BOUNCE_PAIRS: u32 = 3;
 
-/// First row of [`Pair::Opacity`]: the table above has fewer, unless paths have 2²⁹ bounces.
+/// First row of chains, two a bounce: the table above has fewer, unless paths have 2²⁸ bounces.
+const CHAIN_ROWS: u32 = 1 << 30;
+
+/// First row of [`Pair::Opacity`]: likewise.
 const OPACITY_ROWS: u32 = 1 << 31;
 
 /// Which half of a four a pair is; one that stands alone is the first.
@@ -54,6 +61,8 @@ impl Pair {
             Pair::Direction(b) => (bounce(b, 1), Half::First),
             Pair::Light(b) => (bounce(b - 1, 1), Half::Second),
             Pair::Roulette(b) => (bounce(b, 2), Half::First),
+            Pair::Chain(b) => (CHAIN_ROWS + 2 * b, Half::First),
+            Pair::ChainLight(b) => (CHAIN_ROWS + 2 * b + 1, Half::First),
             Pair::Opacity(b, pass) => {
                 let row = b.wrapping_mul(MAX_PASSES).wrapping_add(pass);
                 (OPACITY_ROWS.wrapping_add(row), Half::First)

@@ -7,6 +7,7 @@
     reason = "lanes are numbers here: several arrays are indexed by one"
 )]
 
+use super::chain::Record;
 use super::chunk::{Chunk, WIDEST};
 use super::fresnel::{dielectrics, metal};
 use super::groups::Groups;
@@ -30,15 +31,15 @@ pub(super) struct Bounce<'a> {
 }
 
 /// The arrays of a wave's paths, cut to one length, so that a chunk is checked against it once.
-struct Columns<'a> {
+pub(super) struct Columns<'a> {
     origin: [&'a mut [f32]; 3],
     dir: [&'a mut [f32]; 3],
-    throughput: [&'a mut [f32]; 3],
+    pub(super) throughput: [&'a mut [f32]; 3],
     pdf: &'a mut [f32],
     eta2: &'a mut [f32],
-    slot: &'a [u32],
-    key: &'a [u32],
-    sample: &'a [u32],
+    pub(super) slot: &'a [u32],
+    pub(super) key: &'a [u32],
+    pub(super) sample: &'a [u32],
     err: &'a [f32],
     position: [&'a [f32]; 3],
     ng: [&'a [f32]; 3],
@@ -46,11 +47,13 @@ struct Columns<'a> {
     color: [&'a [f32]; 3],
     material: &'a [u32],
     alive: &'a mut [bool],
+    prim: &'a [u32],
+    record: &'a mut Record,
 }
 
 impl<'a> Columns<'a> {
     #[inline(always)]
-    fn new(wave: &'a mut Wave) -> (Columns<'a>, &'a Groups, &'a mut Shadows) {
+    pub(super) fn new(wave: &'a mut Wave) -> (Columns<'a>, &'a Groups, &'a mut Shadows) {
         let n = wave.paths.len();
         let (paths, surfaces) = (&mut wave.paths, &wave.surfaces);
         let columns = Columns {
@@ -69,6 +72,8 @@ impl<'a> Columns<'a> {
             color: cut(&surfaces.color, n),
             material: &surfaces.material[..n],
             alive: &mut wave.alive[..n],
+            prim: &wave.hits.prim[..n],
+            record: &mut paths.record,
         };
         (columns, &wave.groups, &mut wave.shadows)
     }
@@ -85,9 +90,9 @@ fn cut_mut([x, y, z]: &mut [Vec<f32>; 3], n: usize) -> [&mut [f32]; 3] {
 }
 
 /// The surroundings of paths, turned to the side that each came from.
-struct Local<L: BitLanes> {
+pub(super) struct Local<L: BitLanes> {
     wo: V3<L>,
-    ng: V3<L>,
+    pub(super) ng: V3<L>,
     ns: V3<L>,
     position: V3<L>,
     err: L,
@@ -109,7 +114,7 @@ struct Scattered<L: BitLanes> {
 
 impl<L: BitLanes> Local<L> {
     #[inline(always)]
-    fn new(columns: &Columns, chunk: &Chunk) -> Local<L> {
+    pub(super) fn new(columns: &Columns, chunk: &Chunk) -> Local<L> {
         let wo = -chunk.vector(&columns.dir);
         let (ng, ns) = (chunk.vector(&columns.ng), chunk.vector(&columns.ns));
         let outside = L::splat(0.0).le(wo.dot(ng));
@@ -127,13 +132,13 @@ impl<L: BitLanes> Local<L> {
 
     /// Where rays towards `dir` start.
     #[inline(always)]
-    fn origin(&self, dir: V3<L>) -> V3<L> {
+    pub(super) fn origin(&self, dir: V3<L>) -> V3<L> {
         V3(offset_origin(self.position.0, self.ng.0, self.err, dir.0))
     }
 
     /// Cosine at the shading normal; 0 below either surface.
     #[inline(always)]
-    fn cosine(&self, dir: V3<L>) -> L {
+    pub(super) fn cosine(&self, dir: V3<L>) -> L {
         let zero = L::splat(0.0);
         let above = zero.lt(dir.dot(self.ng));
         L::select(above, dir.dot(self.ns).max(zero), zero)
@@ -219,12 +224,11 @@ impl<L: BitLanes> Plastic<L> {
 /// Next-event estimation at the diffuse and plastic paths: fills the shadow rays of this bounce.
 #[inline(always)]
 pub(super) fn sample_lights<L: BitLanes>(wave: &mut Wave, bounce: Bounce) {
-    let kinds = [Scatter::Diffuse, Scatter::Plastic];
     let (columns, groups, shadows) = Columns::new(wave);
-    let lists = kinds.map(|kind| groups.by_scatter[kind as usize].as_slice());
+    let lists = RECEIVERS.map(|kind| groups.by_scatter[kind as usize].as_slice());
     shadows.reserve(lists[0].len() + lists[1].len());
     let mut len = 0;
-    for (kind, list) in kinds.into_iter().zip(lists) {
+    for (kind, list) in RECEIVERS.into_iter().zip(lists) {
         for chunk in Chunk::all::<L>(list) {
             len += sample_light::<L>(&columns, shadows, bounce, (kind, &chunk), len);
         }
@@ -250,12 +254,7 @@ fn sample_light<L: BitLanes>(
         return 0;
     }
     let per_pi = L::splat(FRAC_1_PI);
-    let (f_pi, share) = if kind == Scatter::Diffuse {
-        (local.color, L::splat(1.0))
-    } else {
-        let plastic = Plastic::new(bounce, columns, chunk, &local);
-        (plastic.eval_base(cos), L::splat(1.0) - plastic.coat_share)
-    };
+    let (f_pi, share) = receive(kind, bounce, columns, chunk, &local, cos);
     let mut weight = L::splat(1.0);
     if bounce.options.mis {
         weight = mis_weight(light.pdf, share * cos * per_pi);
@@ -268,6 +267,26 @@ fn sample_light<L: BitLanes>(
     let slots = chunk.words::<L>(columns.slot);
     let ray = (origin, light.dir, light.t_max);
     shadows.pack(at, valid, ray, radiance, slots)
+}
+
+/// What receives light: the kinds of scattering that light is sampled for.
+pub(super) const RECEIVERS: [Scatter; 2] = [Scatter::Diffuse, Scatter::Plastic];
+
+/// π times the bsdf of what receives, towards a direction of that cosine, and the density of that direction over cos / π.
+#[inline(always)]
+pub(super) fn receive<L: BitLanes>(
+    kind: Scatter,
+    bounce: Bounce,
+    columns: &Columns,
+    chunk: &Chunk,
+    local: &Local<L>,
+    cos: L,
+) -> (V3<L>, L) {
+    if kind == Scatter::Diffuse {
+        return (local.color, L::splat(1.0));
+    }
+    let plastic = Plastic::new(bounce, columns, chunk, local);
+    (plastic.eval_base(cos), L::splat(1.0) - plastic.coat_share)
 }
 
 #[inline(always)]
@@ -352,6 +371,10 @@ fn follow<L: BitLanes>(c: &mut Columns, chunk: &Chunk, local: &Local<L>, s: &Sca
     chunk.put(s.pdf, c.pdf);
     let eta2 = chunk.lanes::<L>(c.eta2) * s.eta2;
     chunk.put(eta2, c.eta2);
+    if !c.record.code.is_empty() {
+        c.record
+            .note(chunk, c.prim, local.origin(s.dir), [s.pdf, s.eta2]);
+    }
     // They are alive so far, all of them.
     let members = chunk.members();
     if alive & members != members {

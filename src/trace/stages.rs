@@ -6,6 +6,7 @@
 )]
 
 use super::camera;
+use super::chain;
 use super::roulette;
 use super::scatter::{self, Bounce};
 use super::surface;
@@ -34,6 +35,12 @@ macro_rules! stages {
         #[inline(never)]
         pub(super) fn sample_lights(wave: &mut Wave, bounce: Bounce) {
             scatter::sample_lights::<$lanes>(wave, bounce);
+        }
+
+        $(#[target_feature(enable = $features)])?
+        #[inline(never)]
+        pub(super) fn sample_chains(wave: &mut Wave, bounce: Bounce) {
+            chain::sample::<$lanes>(wave, bounce);
         }
 
         $(#[target_feature(enable = $features)])?
@@ -98,6 +105,11 @@ pub(super) fn surface(isa: Isa, wave: &mut Wave, scene: &FlatScene) {
 /// [`scatter::sample_lights`].
 pub(super) fn sample_lights(wave: &mut Wave, bounce: Bounce) {
     on_isa!(bounce.options.isa, sample_lights(wave, bounce));
+}
+
+/// [`chain::sample`].
+pub(super) fn sample_chains(wave: &mut Wave, bounce: Bounce) {
+    on_isa!(bounce.options.isa, sample_chains(wave, bounce));
 }
 
 /// [`scatter::sample_bsdf`].

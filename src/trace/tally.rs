@@ -29,6 +29,8 @@ pub enum Stage {
     Lights,
     /// Whether something is in their way, and what they bring; of rays.
     Occlusion,
+    /// Lamps through and by specular spheres; of rays.
+    Caustics,
     /// The next direction at [`crate::flat::Scatter::Diffuse`]; of vertices, as the four that follow.
     Diffuse,
     /// At [`crate::flat::Scatter::Mirror`].
@@ -49,7 +51,7 @@ pub enum Stage {
 
 impl Stage {
     /// All, in the order in which a path meets them.
-    pub const ALL: [Stage; 18] = [
+    pub const ALL: [Stage; 19] = [
         Stage::Camera,
         Stage::ClosestHit,
         Stage::Opacity,
@@ -60,6 +62,7 @@ impl Stage {
         Stage::Emission,
         Stage::Lights,
         Stage::Occlusion,
+        Stage::Caustics,
         Stage::Diffuse,
         Stage::Mirror,
         Stage::Glass,
@@ -84,6 +87,7 @@ impl Stage {
             Stage::Emission => "emission",
             Stage::Lights => "light sampling",
             Stage::Occlusion => "occlusion",
+            Stage::Caustics => "caustics",
             Stage::Diffuse => "diffuse",
             Stage::Mirror => "mirror",
             Stage::Glass => "glass",
@@ -106,7 +110,8 @@ impl Stage {
             | Stage::Surface
             | Stage::VertexColors
             | Stage::Background
-            | Stage::Occlusion => "ray",
+            | Stage::Occlusion
+            | Stage::Caustics => "ray",
             Stage::Roulette | Stage::Compact => "path",
             _ => "vertex",
         }
@@ -158,7 +163,8 @@ impl Tallies {
     /// Rays that asked for their closest hit.
     #[must_use]
     pub fn closest_rays(&self) -> u64 {
-        self.of(Stage::ClosestHit).items + self.of(Stage::Opacity).items
+        let stages = [Stage::ClosestHit, Stage::Opacity, Stage::Caustics];
+        stages.iter().map(|&stage| self.of(stage).items).sum()
     }
 
     /// Rays that asked whether something is in their way.
@@ -233,7 +239,7 @@ mod tests {
         assert_eq!(tallies.of(Stage::Camera), Tally::default());
         let mut twice = tallies;
         twice += tallies;
-        assert_eq!(twice.closest_rays(), 2 * (1 + 2));
+        assert_eq!(twice.closest_rays(), 2 * (1 + 2 + 10));
         assert_eq!(twice.occlusion_rays(), 2 * 9);
         assert_eq!(twice.least(tallies).nanoseconds(), tallies.nanoseconds());
     }

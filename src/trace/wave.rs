@@ -1,5 +1,6 @@
 //! The wave: a batch of paths in SoA path state, all at the same bounce.
 
+use super::chain::{Reached, Record};
 use super::chunk::WIDEST;
 use super::groups::{self, Glances, Groups};
 use super::vector::{V3, get, set};
@@ -30,6 +31,8 @@ pub(super) struct Paths {
     pub(super) key: Vec<u32>,
     /// Its sample index.
     pub(super) sample: Vec<u32>,
+    /// Its last diffuse vertex, where scenes have chains.
+    pub(super) record: Record,
 }
 
 /// What the surface stage finds; entry i belongs to path i, and is meaningless where the path hit nothing or where there
@@ -86,6 +89,7 @@ pub(super) struct Wave {
     pub(super) through: Through,
     pub(super) groups: Groups,
     pub(super) glances: Glances,
+    pub(super) reached: Reached,
     /// Whether path i goes on.
     pub(super) alive: Vec<bool>,
 }
@@ -125,6 +129,7 @@ impl Paths {
         self.slot.clear();
         self.key.clear();
         self.sample.clear();
+        self.record.code.clear();
     }
 
     /// The starts of n paths, one for each slot, but for their rays and random numbers.
@@ -160,32 +165,49 @@ impl Paths {
         let [dx, dy, dz] = &mut self.rays.dir;
         let [r, g, b] = &mut self.throughput;
         let (pdf, eta2) = (&mut self.pdf, &mut self.eta2);
-        let mut floats = [ox, oy, oz, dx, dy, dz, r, g, b, pdf, eta2];
-        let mut words = [&mut self.slot, &mut self.key, &mut self.sample];
-        let (whole, mut to) = (n - n % L::N, 0);
-        for at in (0..whole).step_by(L::N) {
-            let kept = members::<L>(&alive[at..]);
-            let count = kept.count_ones() as usize;
-            if to < at || count < L::N {
-                for array in &mut floats {
-                    L::load(&array[at..]).pack(kept, &mut array[to..]);
-                }
-                for array in &mut words {
-                    <L::Bits as Words>::load(&array[at..]).pack(kept, &mut array[to..]);
-                }
-            }
-            to += count;
-        }
-        for at in (whole..n).filter(|&at| alive[at]) {
-            floats.iter_mut().for_each(|array| array[to] = array[at]);
-            words.iter_mut().for_each(|array| array[to] = array[at]);
-            to += 1;
-        }
-        floats.into_iter().for_each(|array| array.truncate(to));
-        words.into_iter().for_each(|array| array.truncate(to));
+        let floats = [ox, oy, oz, dx, dy, dz, r, g, b, pdf, eta2];
+        let words = [&mut self.slot, &mut self.key, &mut self.sample];
+        let kept = keep::<L, 11, 3>(&alive[..n], floats, words);
         // All are alike: no path has an end.
-        self.rays.t_max.truncate(to);
+        self.rays.t_max.truncate(kept);
+        if !self.record.code.is_empty() {
+            let Record { origin, pdf, code } = &mut self.record;
+            let [x, y, z] = origin;
+            keep::<L, 4, 1>(&alive[..n], [x, y, z, pdf], [code]);
+        }
     }
+}
+
+/// Keeps the elements that `alive` says, in order; returns how many.
+#[inline(always)]
+fn keep<L: BitLanes, const F: usize, const W: usize>(
+    alive: &[bool],
+    mut floats: [&mut Vec<f32>; F],
+    mut words: [&mut Vec<u32>; W],
+) -> usize {
+    let n = alive.len();
+    let (whole, mut to) = (n - n % L::N, 0);
+    for at in (0..whole).step_by(L::N) {
+        let kept = members::<L>(&alive[at..]);
+        let count = kept.count_ones() as usize;
+        if to < at || count < L::N {
+            for array in &mut floats {
+                L::load(&array[at..]).pack(kept, &mut array[to..]);
+            }
+            for array in &mut words {
+                <L::Bits as Words>::load(&array[at..]).pack(kept, &mut array[to..]);
+            }
+        }
+        to += count;
+    }
+    for at in (whole..n).filter(|&at| alive[at]) {
+        floats.iter_mut().for_each(|array| array[to] = array[at]);
+        words.iter_mut().for_each(|array| array[to] = array[at]);
+        to += 1;
+    }
+    floats.into_iter().for_each(|array| array.truncate(to));
+    words.into_iter().for_each(|array| array.truncate(to));
+    to
 }
 
 /// Bit i: element i, as many as there are lanes.

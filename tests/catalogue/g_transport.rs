@@ -246,6 +246,7 @@ fn g5_depth(trials: u64) -> Outcome {
         for depth in 0..8 {
             let options = TraceOptions {
                 nee,
+                caustics: nee,
                 sampler,
                 ..bare(depth)
             };

@@ -70,6 +70,13 @@ fn no_dial_moves_the_mean() {
             },
         ),
         (
+            "caustics",
+            TraceOptions {
+                caustics: true,
+                ..exact
+            },
+        ),
+        (
             "no nee",
             TraceOptions {
                 nee: false,

@@ -47,6 +47,7 @@ impl Stage {
             background: [0.4, 0.5, 0.6],
             uv_aov: false,
             fresnel: Fresnel::Exact,
+            caustics: false,
         };
         let mut builder = SceneBuilder::new(&spawned.world, &spawned.assets, options);
         world::pose(&mut spawned.world, t);

@@ -209,6 +209,7 @@ pub fn empty_scene() -> FlatScene {
         materials: Vec::new(),
         textures: Vec::new(),
         lights: Lights::default(),
+        chains: Default::default(),
         background: [0.0; 3],
         environment: None,
         camera: Camera {

@@ -190,6 +190,7 @@ impl Subject {
             materials: Vec::new(),
             textures: Vec::new(),
             lights: Lights::default(),
+            chains: Default::default(),
             background: [0.0; 3],
             environment: None,
             camera: UNUSED_CAMERA,

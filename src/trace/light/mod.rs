@@ -17,6 +17,7 @@ use crate::math::Vec3;
 use crate::math::lanes::BitLanes;
 use environment::sample_environment;
 pub(super) use environment::{Seen, see};
+pub(super) use sphere::sample_lamp;
 use sphere::{Chosen, sample_spheres, sphere_pdf};
 
 /// Shadow rays stop short of the light by this factor, four units in the last place: the light's own hit, whose t is

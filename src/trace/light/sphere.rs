@@ -4,7 +4,7 @@
     reason = "lanes are numbers here: several arrays are indexed by one"
 )]
 
-use super::{LightSample, SHORT, mean};
+use super::{LightSample, SHORT, choose, mean};
 use crate::flat::FlatScene;
 use crate::math::Vec3;
 use crate::math::lanes::{BitLanes, WideLanes};
@@ -167,6 +167,59 @@ pub(super) fn sample_spheres<L: BitLanes>(
         pdf: cone.pdf() * spheres.share,
         punctual: 0,
         valid: cone.valid,
+    }
+}
+
+/// A point of a sphere light, in each lane.
+pub(in crate::trace) struct Lamp<L: BitLanes> {
+    /// Index of the sphere.
+    pub(in crate::trace) sphere: [u32; WIDEST],
+    /// To the point, unit, and how far it is.
+    pub(in crate::trace) dir: V3<L>,
+    pub(in crate::trace) distance: L,
+    /// There, outward; and its cosine with the way back.
+    pub(in crate::trace) normal: V3<L>,
+    pub(in crate::trace) cos: L,
+    pub(in crate::trace) radiance: V3<L>,
+    /// Over solid angle, the choice of the light included.
+    pub(in crate::trace) pdf: L,
+    /// Bit i: lane i has a point. The other lanes are meaningless.
+    pub(in crate::trace) valid: u32,
+}
+
+/// Samples a point on a sphere light that shines outward; where the table chooses another light, there is none.
+#[inline(always)]
+pub(in crate::trace) fn sample_lamp<L: BitLanes>(
+    scene: &FlatScene,
+    from: V3<L>,
+    choice: L,
+    u: [L; 2],
+) -> Lamp<L> {
+    let lights = &scene.lights;
+    let mut numbers = [0.0; WIDEST];
+    choice.store(&mut numbers);
+    let (mut sphere, mut valid) = ([lights.spheres[0]; WIDEST], 0);
+    for lane in 0..L::N {
+        if let Some(&chosen) = lights.spheres.get(choose(lights, numbers[lane]) as usize) {
+            sphere[lane] = chosen;
+            valid |= 1 << lane;
+        }
+    }
+    let chosen = Chosen::each(scene, &sphere);
+    let cone = Cone::new(from, &chosen);
+    let dir = cone.sample(u);
+    let distance = cone.distance(dir);
+    let back = V3::narrow(cone.to_center) - dir * distance;
+    let normal = -(back * (L::splat(1.0) / L::narrow(cone.radius)));
+    Lamp {
+        sphere,
+        dir,
+        distance,
+        normal,
+        cos: -normal.dot(dir),
+        radiance: chosen.radiance,
+        pdf: cone.pdf() * chosen.share,
+        valid: valid & cone.valid & !chosen.inverted_bits,
     }
 }
 
