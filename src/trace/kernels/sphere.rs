@@ -4,6 +4,9 @@
 //! (Hearn and Baker; Haines, Günther and Akenine-Möller, *Precision Improvements for Ray/Sphere Intersection*, Ray Tracing
 //! Gems, ch. 7), and the roots are c / q and q / a with `q = −(b + sign(b) √disc)`, which cancels nothing. In f64 t is right
 //! to the last bit of f32 for radii from 10⁻⁴ to 10⁸; in f32 every known form loses three to six digits on walls.
+//!
+//! Tried: b, c and the discriminant alone in f64, t estimated in f32, and one root of the sphere that comes first (the same
+//! bits): in a room of nine spheres, closest hits took 1.02 and occlusion 1.19 of the time.
 
 use crate::math::lanes::{Lanes, WideLanes};
 
