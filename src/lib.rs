@@ -118,9 +118,7 @@
 //! * Samples come in fours of dimensions, which are even in base 4, as well as in pairs, which are so in base 2
 //!   (`trace::sampler`): what two pairs decide together converges as what one decides alone.
 //! * Lamps are also sampled through and by specular spheres (`trace::chain`), which solves one equation in a plane. It is a
-//!   dial and off by default: where no caustic is seen, it costs an eighth of the time for nothing.
-//! * Of the spheres outside the tree, f32 estimates tell which one comes first, and one f64 root where
-//!   (`trace::kernels::looped`).
+//!   dial and off by default: where no caustic is seen, it costs an eighth to a third of the time for nothing.
 //! * `world::AuthoringIndex` is a pair, entity and node, since one entity of a scene may stand for a file's many.
 //! * What moved is not asked of hecs's `ChangeTracker`: it compares with clones, as comparing what was extracted with the
 //!   frame before's does, but it needs the world mutable and does not see that a mesh became another. Poses are computed
