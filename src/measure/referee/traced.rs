@@ -79,7 +79,7 @@ impl Traced<'_> {
                 continue;
             }
             let sure = candidate.certainty == Certainty::Hit;
-            if sure || self.closed_around(&candidate, limit) {
+            if sure || self.closed_around(prim, &candidate, limit) {
                 return Verdict::Wrong;
             }
             edge = true;
@@ -149,9 +149,10 @@ impl Traced<'_> {
         }
     }
 
-    /// Whether the surface goes on around a doubtful candidate: lines moved aside all meet something as near, so that a
-    /// ray that got past it went through a crack.
-    fn closed_around(&self, candidate: &Candidate, limit: f64) -> bool {
+    /// Whether the surface goes on around a doubtful candidate: lines moved aside all meet it, or what has a corner in common
+    /// with it, as near; so that a ray that got past it went through a crack. (Anything at all would not do: the gap
+    /// between two parts that are closer to each other than the lines would be taken for closed.)
+    fn closed_around(&self, prim: u32, candidate: &Candidate, limit: f64) -> bool {
         let aside = ASIDE * candidate.reach;
         let x = self.line.dir.any_orthogonal_vector().normalize();
         let y = self.line.dir.cross(x).normalize();
@@ -167,8 +168,18 @@ impl Traced<'_> {
                 origin,
                 ..self.line
             };
-            self.referee.closest(&moved, near).is_some()
+            let met = self.referee.closest(&moved, near);
+            met.is_some_and(|exact| self.touch(prim, exact.prim))
         })
+    }
+
+    /// Whether two primitives are one, or triangles with a corner in common.
+    fn touch(&self, a: u32, b: u32) -> bool {
+        let triangle = |prim: u32| self.referee.primitives.triangles.get(prim as usize);
+        match (triangle(a), triangle(b)) {
+            (Some(of_a), Some(of_b)) => of_a.iter().any(|corner| of_b.contains(corner)),
+            _ => a == b,
+        }
     }
 
     /// Bound on |t − t64| of a hit at about `t`.
