@@ -109,7 +109,7 @@ fn check_scene(name: &str, size: (u32, u32), bounces: u32) {
     };
     let mut sums = TileSums::default();
     Tracer::new(&flat, &options).trace_tile(rect, 0..SPP, &mut sums);
-    let (mut longest, mut lights) = (0, 0);
+    let (mut longest, mut lights, mut caustics) = (0, 0, 0);
     for pixel in 0..width * height {
         let (x, y) = (pixel % width, pixel / width);
         let paths: Vec<Replay> = (0..SPP)
@@ -123,6 +123,8 @@ fn check_scene(name: &str, size: (u32, u32), bounces: u32) {
             check_path(path, bounces);
             longest = longest.max(path.vertices.len());
             lights += path.vertices.iter().filter(|v| v.light.is_some()).count();
+            let lit = path.vertices.iter().filter(|v| v.caustic != [0.0; 3]);
+            caustics += lit.count();
         }
         assert_eq!(sum, sums.rgb[pixel as usize], "{name}, pixel ({x}, {y})");
     }
@@ -130,6 +132,7 @@ fn check_scene(name: &str, size: (u32, u32), bounces: u32) {
         longest > 2 && lights > 0,
         "{name}: {longest} vertices, {lights} light samples"
     );
+    assert_eq!(caustics > 0, !flat.chains.is_empty(), "{name}");
 }
 
 /// What a path says of itself agrees with itself.

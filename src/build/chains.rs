@@ -18,15 +18,10 @@ const NOTHING_INSIDE: [f64; 2] = [2.0, 1.0];
 pub(crate) fn chains(scene: &FlatScene) -> Chains {
     let mut found = Vec::new();
     if lamps_have_one_radiance(scene) && receives(scene) && !scene.needs.opacity {
-        for sphere in 0..scene.spheres.placed.len() {
-            if surrounded(scene, sphere) {
-                continue;
-            }
-            found.extend(of_sphere(scene, sphere));
-            if found.len() >= MOST {
-                break;
-            }
-        }
+        // A key has room for so many spheres.
+        let spheres = 0..scene.spheres.placed.len().min(Chains::REFLECTED as usize);
+        let chains = spheres.flat_map(|sphere| of_sphere(scene, sphere));
+        found.extend(chains.take(MOST));
     }
     found.sort_by_key(|chain: &Chain| chain.key);
     let mut chains = Chains::default();
@@ -85,7 +80,14 @@ fn chain(sphere: usize, bounces: Bounces, shape: [f64; 4], [r, g, b]: [f64; 3]) 
 
 fn of_sphere(scene: &FlatScene, sphere: usize) -> Vec<Chain> {
     let material = material(scene, sphere);
-    let Some(color) = plain_color(scene, sphere).filter(|_| !scene.spheres.inverted[sphere]) else {
+    let specular = matches!(
+        material.scatter,
+        Scatter::Mirror | Scatter::Metal | Scatter::Glass
+    );
+    if !specular || scene.spheres.inverted[sphere] || surrounded(scene, sphere) {
+        return Vec::new();
+    }
+    let Some(color) = plain_color(scene, sphere) else {
         return Vec::new();
     };
     let ior = f64::from(material.ior);
@@ -199,7 +201,7 @@ fn clear_of_triangles(scene: &FlatScene, sphere: usize) -> bool {
     let outside = |[min, max]: [[f32; 3]; 2]| {
         let beyond = |k: usize| {
             let (low, high) = (f64::from(min[k]), f64::from(max[k]));
-            center[k] - center[k].clamp(low, high.max(low))
+            center[k] - center[k].max(low).min(high)
         };
         DVec3::new(beyond(0), beyond(1), beyond(2)).length() >= radius
     };

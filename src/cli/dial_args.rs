@@ -53,7 +53,7 @@ pub(crate) struct DialArgs {
     #[arg(long, value_enum, default_value_t = Switch::On)]
     pub(crate) mis: Switch,
     /// Also sample lamps through and by balls of glass, mirror and metal: less noise where their caustics are seen, for
-    /// an eighth to a third more time
+    /// an eighth to a third more time. Part of --nee and --mis
     #[arg(long, value_enum, default_value_t = Switch::Off)]
     pub(crate) caustics: Switch,
     /// With --noise, give each part of the image as many samples as it needs; off, all of it the same

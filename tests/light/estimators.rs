@@ -94,6 +94,7 @@ fn no_dial_moves_the_mean() {
         ),
     ];
     for (name, options) in dials {
+        assert_eq!(stage.flat(0, &options).chains.is_empty(), !options.caustics);
         let spp = if options.nee { 64 } else { 192 };
         assert_mean(name, means(&stage, spp, &options), truth, 0.03);
     }

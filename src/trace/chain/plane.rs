@@ -11,14 +11,14 @@
 use crate::flat::Bounces;
 use crate::math::lanes::BitLanes;
 
-/// Steps of Newton's method: with one less, a quarter of the ways is not found.
+/// Steps of Newton's method. What fewer do not find, paths must.
 const STEPS: usize = 5;
 
 /// How near the line must pass the lamp's point, relative to all lengths.
 const NEAR: f32 = 1.0 / 16_384.0;
 
-/// Where searches begin, over the greatest h: of those that a scan finds, together they find all reflections, and of the
-/// ways through, which are up to three, 99.5 %.
+/// Where searches begin, over the greatest h. Of rays that a test sends through balls, they find 92 % again where there are
+/// up to three ways, and all but one in a thousand elsewhere (`searches_find_what_arrives`).
 pub(super) const STARTS: [f32; 3] = [-0.95, 0.3, 0.95];
 
 /// A circle so wide that nothing is bent there.

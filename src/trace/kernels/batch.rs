@@ -192,13 +192,7 @@ fn walk_world<L: Walks, R: Sink, const T: bool, const S: bool, const I: bool, co
     sink: &mut R,
     scratch: &mut Scratch,
 ) {
-    let tree = Tree {
-        bvh: &scene.world.bvh,
-        triangles: &scene.world.triangles.blocks,
-        spheres: &scene.spheres.blocks,
-        instance: Hits::WORLD,
-        floor: 0.0,
-    };
+    let tree = Tree::world(scene);
     if I {
         let mut instances = LocalTrees {
             scene,

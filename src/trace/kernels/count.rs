@@ -79,13 +79,7 @@ impl<'a> Walk<'a> {
         let of = |array: &[Vec<f32>; 3]| [array[0][i], array[1][i], array[2][i]];
         let ray = WalkRay::<f32>::new(of(&rays.origin), of(&rays.dir));
         let scene = self.scene;
-        let tree = Tree {
-            bvh: &scene.world.bvh,
-            triangles: &scene.world.triangles.blocks,
-            spheres: &scene.spheres.blocks,
-            instance: Hits::WORLD,
-            floor: 0.0,
-        };
+        let tree = Tree::world(scene);
         match ray {
             Some(ray) if best.t > 0.0 && !scene.world.bvh.bounds.is_empty() => {
                 self.tree::<ANY>(&tree, &ray, best)

@@ -6,7 +6,7 @@ use super::sphere::WideRay;
 use super::stack::{DONE, Stack};
 use super::triangle::{self, Candidates, FromLane};
 use crate::flat::bvh::{WIDTH, kind};
-use crate::flat::{BLOCK, Bvh, Child, LinearNode, SphereBlock, Spheres, TriangleBlock};
+use crate::flat::{BLOCK, Bvh, Child, FlatScene, LinearNode, SphereBlock, Spheres, TriangleBlock};
 use crate::math::lanes::{Lanes, WideLanes};
 use crate::trace::Hits;
 
@@ -71,6 +71,18 @@ pub(super) struct Tree<'a> {
 }
 
 impl Tree<'_> {
+    /// The world's.
+    #[inline(always)]
+    pub(super) fn world(scene: &FlatScene) -> Tree<'_> {
+        Tree {
+            bvh: &scene.world.bvh,
+            triangles: &scene.world.triangles.blocks,
+            spheres: &scene.spheres.blocks,
+            instance: Hits::WORLD,
+            floor: 0.0,
+        }
+    }
+
     /// Where a child is, to be asked for; anywhere for instances and for what is not there.
     #[inline(always)]
     pub(super) fn address(&self, child: Child) -> *const u8 {
