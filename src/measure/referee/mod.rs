@@ -10,7 +10,7 @@
 //! - *tie*: another primitive than in f64, and their t lie inside the sum of their bounds.
 //! - *edge*: hit and miss differ, and an f64 edge function of the triangle in question lies **inside** the bound on the
 //!   rounding of the f32 one around 0: whether the ray passes is not for f32 to know. But neighbours decide alike: where
-//!   the surface goes on around the ray, it must have been hit.
+//!   the surface goes on around the ray and does not turn back there, it must have been hit.
 //! - *wrong*: anything else. A miss on a closed mesh is always wrong.
 //!
 //! Spheres are held to f64, in which their kernel computes: a rounding of t, and grazing to 2⁻⁴⁴ of the numbers involved.

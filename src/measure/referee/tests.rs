@@ -218,6 +218,39 @@ fn rays_at_the_rim_of_a_surface_may_miss() {
     );
 }
 
+/// A miss at the middle of a fan of triangles, its rim given beside the ray and in depth.
+fn missed_middle(rim: &[[f32; 3]]) -> Verdict {
+    let middle = Vec3::new(0.1, 0.2, 3.0);
+    let corner = |k: usize| middle + Vec3::from(rim[k % rim.len()]);
+    let triangles: Vec<_> = (0..rim.len())
+        .map(|k| [middle, corner(k), corner(k + 1)])
+        .collect();
+    let referee = Referee::new(Primitives {
+        triangles: &triangles,
+        ..Primitives::default()
+    });
+    let ray = [[0.0; 3], middle.normalize().to_array()];
+    referee.trace(ray, f32::MAX).judge(None)
+}
+
+#[test]
+fn rays_into_the_notch_of_a_saddle_may_miss() {
+    // Left and right of the ray two triangles each, below it the narrow rest; between second and fifth, above, nothing: a
+    // notch of 7 degrees, which lines aside pass by.
+    let saddle = [
+        [0.16, -1.0, 0.1],
+        [-0.28, 1.0, 0.3],
+        [0.21, -1.0, -0.2],
+        [0.26, -1.0, 0.2],
+        [-0.15, 1.0, -0.1],
+        [0.22, -1.0, 0.3],
+    ];
+    assert_eq!(missed_middle(&saddle), Verdict::Edge);
+    // Once around is a crack.
+    let around = [0, 1, 4, 3].map(|k| saddle[k]);
+    assert_eq!(missed_middle(&around), Verdict::Wrong);
+}
+
 #[test]
 fn what_underflow_hides_is_doubtful() {
     // The upper edge lies at z = 2, and the ray passes it by 1.4e-45, which no product in f32 tells from nothing.

@@ -149,9 +149,13 @@ impl Traced<'_> {
         }
     }
 
-    /// Whether the surface goes on around a doubtful candidate: lines moved aside all meet it, or what has a corner in common
-    /// with it, as near; so that a ray that got past it went through a crack. (Anything at all would not do: the gap
-    /// between two parts that are closer to each other than the lines would be taken for closed.)
+    /// Whether the surface goes on around a doubtful candidate, so that a ray that got past it went through a crack: lines moved
+    /// aside all meet it, or what has a corner in common with it, an odd number of times before the limit.
+    ///
+    /// Rounding moves vertices, and how often a surface lies over a point does not change by that, modulo 2, as long as its
+    /// rim stays away from the point (its degree, Milnor, *Topology from the Differentiable Viewpoint*, 1965, §4). Where it is
+    /// even, the surface turns back near the ray, whatever is met around: through the notch of a saddle that is seen almost
+    /// along its surface, rays pass that no line aside falls into. What has no corner in common is another surface.
     fn closed_around(&self, prim: u32, candidate: &Candidate, limit: f64) -> bool {
         let aside = ASIDE * candidate.reach;
         let x = self.line.dir.any_orthogonal_vector().normalize();
@@ -168,8 +172,11 @@ impl Traced<'_> {
                 origin,
                 ..self.line
             };
-            let met = self.referee.closest(&moved, near);
-            met.is_some_and(|exact| self.touch(prim, exact.prim))
+            let met = self.referee.candidates(&moved, near);
+            let over = met
+                .iter()
+                .filter(|(of, c)| c.inside && self.touch(prim, *of));
+            over.count() % 2 == 1
         })
     }
 
