@@ -1,11 +1,12 @@
 //! `luxel animate` from outside.
 
-use crate::folder::{Folder, text};
+use crate::folder::{files, folder, names};
+use crate::support::{Folder, text};
 use std::fs;
 
 #[test]
 fn frames_are_those_of_render_and_do_not_depend_on_each_other() {
-    let folder = Folder::new("frames");
+    let folder = folder("frames");
     let told = folder.expect(
         &["animate", "spin.ron"],
         0,
@@ -13,8 +14,8 @@ fn frames_are_those_of_render_and_do_not_depend_on_each_other() {
     );
     let paths: Vec<String> = (0..12).map(|k| format!("spin_{k:04}.png")).collect();
     assert_eq!(text(&told.stdout), paths.join("\n") + "\n");
-    assert_eq!(folder.names(), paths);
-    let all = folder.files();
+    assert_eq!(names(&folder), paths);
+    let all = files(&folder);
     assert_ne!(all["spin_0003.png"], all["spin_0004.png"]);
     folder.expect(
         &["render", "spin.ron", "--frame", "7", "-o", "alone.png"],
@@ -33,7 +34,7 @@ fn frames_are_those_of_render_and_do_not_depend_on_each_other() {
         0,
         &["4 frames: 3–9 by 3, 11"],
     );
-    assert_eq!(folder.files()["alone.png"], all["spin_0007.png"]);
+    assert_eq!(files(&folder)["alone.png"], all["spin_0007.png"]);
     for k in [3, 6, 9, 11] {
         let some = fs::read(folder.0.join(format!("some/f{k}.png"))).expect("there");
         assert_eq!(some, all[&paths[k]], "frame {k}");
@@ -42,7 +43,7 @@ fn frames_are_those_of_render_and_do_not_depend_on_each_other() {
 
 #[test]
 fn a_full_turn_is_frame_0_under_fixed_noise() {
-    let folder = Folder::new("turn");
+    let folder = folder("turn");
     let args = [
         "animate",
         "spin.ron",
@@ -81,7 +82,7 @@ fn a_full_turn_is_frame_0_under_fixed_noise() {
 
 #[test]
 fn finished_frames_are_kept_if_they_are_what_is_asked_for() {
-    let folder = Folder::new("kept");
+    let folder = folder("kept");
     let line = ["animate", "spin.ron", "--frames", "0..4"];
     folder.expect(&line, 0, &["4 frames: 0–3"]);
     let times = |folder: &Folder| {
@@ -100,7 +101,7 @@ fn finished_frames_are_kept_if_they_are_what_is_asked_for() {
         [after[0], after[1], after[3]]
     );
 
-    let all = folder.files();
+    let all = files(&folder);
     let with = |more: &[&'static str]| [&line[..], more].concat();
     folder.expect(
         &with(&["--spp", "3"]),
@@ -125,7 +126,7 @@ fn finished_frames_are_kept_if_they_are_what_is_asked_for() {
     .expect("ours");
     folder.expect(&line, 2, &["made of another scene, or of other files"]);
     fs::write(folder.0.join("cube.obj"), cube).expect("ours");
-    assert_eq!(folder.files(), all, "nothing was touched");
+    assert_eq!(files(&folder), all, "nothing was touched");
 
     let half = &all["spin_0001.png"][..all["spin_0001.png"].len() / 2];
     fs::write(folder.0.join("spin_0001.png"), half).expect("ours");
@@ -133,12 +134,12 @@ fn finished_frames_are_kept_if_they_are_what_is_asked_for() {
     fs::write(folder.0.join("spin_0001.png"), "somebody's notes").expect("ours");
     folder.expect(&line, 2, &["spin_0001.png", "no whole PNG"]);
     folder.expect(&with(&["--overwrite"]), 0, &["4 frames: 0–3\n"]);
-    assert_eq!(folder.files(), all);
+    assert_eq!(files(&folder), all);
 }
 
 #[test]
 fn further_images_are_settings_too() {
-    let folder = Folder::new("aov");
+    let folder = folder("aov");
     let line = ["animate", "spin.ron", "--frames", "0..2", "-o", "f_#.exr"];
     let with = |more: &[&'static str]| [&line[..], more].concat();
     folder.expect(&with(&["--aov", "normal,depth"]), 0, &[]);
@@ -153,15 +154,15 @@ fn further_images_are_settings_too() {
 
 #[test]
 fn films_are_those_of_the_frames_whenever_these_were_made() {
-    let folder = Folder::new("films");
+    let folder = folder("films");
     let line = ["animate", "spin.ron", "--gif", "a.gif", "--y4m", "a.y4m"];
     folder.expect(&line, 0, &[]);
-    let first = folder.files();
+    let first = files(&folder);
     for name in ["a.gif", "a.y4m", "spin_0005.png"] {
         fs::remove_file(folder.0.join(name)).expect("ours");
     }
     folder.expect(&line, 0, &["11 of them are finished"]);
-    assert_eq!(folder.files(), first);
+    assert_eq!(files(&folder), first);
     let out = folder.expect(
         &["animate", "spin.ron", "--y4m", "-"],
         0,
@@ -181,7 +182,7 @@ fn films_are_those_of_the_frames_whenever_these_were_made() {
         0,
         &[],
     );
-    assert_eq!(folder.files()["b.y4m"], *film);
+    assert_eq!(files(&folder)["b.y4m"], *film);
     // Every second frame at half the rate.
     let half = folder.expect(
         &["animate", "spin.ron", "--frames", "0..12:2", "--y4m", "-"],
@@ -193,7 +194,7 @@ fn films_are_those_of_the_frames_whenever_these_were_made() {
 
 #[test]
 fn wrong_lines_are_explained_and_cost_nothing() {
-    let folder = Folder::new("wrong");
+    let folder = folder("wrong");
     let cases: &[(&[&str], &[&str])] = &[
         (&["--frames", "48..0"], &["48..0", "0..48"]),
         (&["--frames", "5..5"], &["holds no frame"]),
@@ -232,7 +233,7 @@ fn wrong_lines_are_explained_and_cost_nothing() {
     )
     .expect("ours");
     folder.expect(&["animate", "bad.ron"], 65, &["key times must rise"]);
-    assert_eq!(folder.names(), ["bad.ron"]);
+    assert_eq!(names(&folder), ["bad.ron"]);
     folder.expect(
         &["animate", "spin.ron", "-o", "spin.ron/f_#.png"],
         74,

@@ -1,7 +1,8 @@
 //! What instances without number take of a process, where the system tells.
 #![cfg(all(target_os = "linux", target_env = "gnu"))]
 
-use crate::folder::Folder;
+use crate::folder::folder;
+use crate::support::Folder;
 use std::fmt::Write;
 use std::fs;
 use std::process::Stdio;
@@ -58,7 +59,7 @@ fn most(folder: &Folder, scene: &str) -> usize {
 
 #[test]
 fn ten_thousand_instances_take_a_kibibyte_each() {
-    let folder = Folder::new("crowd");
+    let folder = folder("crowd");
     for count in [1, CROWD] {
         let name = format!("{count}.ron");
         fs::write(folder.0.join(name), scene(count)).expect("writable");

@@ -1,6 +1,7 @@
 //! Animations of glTF files: channels of every interpolation against their formulas, and what cannot be read.
 
-use crate::folder::Folder;
+use crate::folder::folder;
+use crate::support::Folder;
 use luxel::asset::Loader;
 use luxel::math::{DAffine3, DQuat, DVec3};
 use luxel::scene;
@@ -110,7 +111,7 @@ fn assert_pose(spawned: &mut Spawned, t: f64, name: &str, wanted: DAffine3) {
 
 #[test]
 fn channels_move_nodes_as_their_interpolation_says() {
-    let folder = Folder::new("gltf");
+    let folder = folder("gltf");
     let half = std::f32::consts::FRAC_1_SQRT_2;
     // Quarter turns about z; jumps; a spline through 0, 1, 0 that is left and reached with slope 2, 0, −2.
     let turns = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, half, half, 0.0, 0.0, 1.0, 0.0];
@@ -142,7 +143,7 @@ fn channels_move_nodes_as_their_interpolation_says() {
 
 #[test]
 fn what_cannot_be_read_stays_at_rest_and_is_told() {
-    let folder = Folder::new("gltf-bad");
+    let folder = folder("gltf-bad");
     let nan = [0.0, 0.0, 0.0, f32::NAN, 0.0, 0.0, 1.0, 0.0, 0.0];
     let cases: [(usize, &str, &str, &[f32]); 4] = [
         (0, "translation", "LINEAR", &nan),
@@ -169,7 +170,7 @@ fn what_cannot_be_read_stays_at_rest_and_is_told() {
 /// A scene that `convert` writes moves as its file does, where both go straight.
 #[test]
 fn convert_writes_keys() {
-    let folder = Folder::new("gltf-convert");
+    let folder = folder("gltf-convert");
     let moves: &[f32] = &[0.0, 0.0, 0.0, 1.0, 2.0, 3.0, 0.5, 0.0, 0.0];
     let turns: &[f32] = &[0.0, 0.0, 0.0, 1.0, 0.0, 0.6, 0.0, 0.8, 0.0, 0.0, 1.0, 0.0];
     let mut spawned = spawn(

@@ -1,7 +1,8 @@
 //! Animations that do not come to their end: killed, stopped, out of room. What is there is whole, and the same line goes
 //! on from it to the same files.
 
-use crate::folder::{Folder, expect, text};
+use crate::folder::{files, folder, names};
+use crate::support::{Folder, expect, text};
 use std::collections::BTreeMap;
 use std::fs;
 use std::process::{Command, Stdio};
@@ -12,18 +13,18 @@ const LINE: [&str; 6] = ["animate", "spin.ron", "--frames", "0..8", "--gif", "a.
 fn reference(folder: &Folder) -> (BTreeMap<String, Vec<u8>>, Duration) {
     let start = Instant::now();
     folder.expect(&LINE, 0, &[]);
-    (folder.files(), start.elapsed())
+    (files(folder), start.elapsed())
 }
 
 fn clear(folder: &Folder) {
-    for name in folder.names() {
+    for name in names(folder) {
         fs::remove_file(folder.0.join(name)).expect("ours");
     }
 }
 
 #[test]
 fn killed_at_any_moment_it_goes_on_to_the_same_files() {
-    let folder = Folder::new("killed");
+    let folder = folder("killed");
     let (wanted, took) = reference(&folder);
     let mut cut_short = 0;
     for round in 0..20u32 {
@@ -40,14 +41,14 @@ fn killed_at_any_moment_it_goes_on_to_the_same_files() {
         child.kill().expect("ours");
         let status = child.wait().expect("ours");
         cut_short += u32::from(!status.success());
-        for (name, bytes) in folder.files() {
+        for (name, bytes) in files(&folder) {
             // Neither is what asks whether a file can be written.
             if !name.ends_with(".partial") && !name.ends_with(".probe") {
                 assert_eq!(wanted.get(&name), Some(&bytes), "{name} is whole");
             }
         }
         assert!(quiet(&LINE).status().expect("luxel runs").success());
-        assert_eq!(folder.files(), wanted, "round {round}");
+        assert_eq!(files(&folder), wanted, "round {round}");
     }
     assert!(cut_short >= 10, "only {cut_short} of 20 were cut short");
 }
@@ -55,7 +56,7 @@ fn killed_at_any_moment_it_goes_on_to_the_same_files() {
 #[cfg(unix)]
 #[test]
 fn stopped_it_says_75_and_goes_on() {
-    let folder = Folder::new("stopped");
+    let folder = folder("stopped");
     let line = ["animate", "spin.ron", "--spp", "64"];
     let mut child = folder
         .command(&line)
@@ -64,7 +65,7 @@ fn stopped_it_says_75_and_goes_on() {
         .spawn()
         .expect("luxel runs");
     let start = Instant::now();
-    while folder.names().is_empty() && start.elapsed() < Duration::from_secs(30) {
+    while names(&folder).is_empty() && start.elapsed() < Duration::from_secs(30) {
         std::thread::sleep(Duration::from_millis(2));
     }
     let pid = child.id().to_string();
@@ -86,14 +87,14 @@ fn stopped_it_says_75_and_goes_on() {
             "the same line goes on",
         ],
     );
-    let there = folder.files();
+    let there = files(&folder);
     assert!(
         !there.is_empty() && there.len() < 12,
         "{:?}",
-        folder.names()
+        names(&folder)
     );
     folder.expect(&line, 0, &["of them are finished"]);
-    let after = folder.files();
+    let after = files(&folder);
     assert_eq!(after.len(), 12);
     assert!(there.iter().all(|(name, bytes)| after[name] == *bytes));
     child = folder
@@ -107,7 +108,7 @@ fn stopped_it_says_75_and_goes_on() {
 #[cfg(unix)]
 #[test]
 fn without_room_it_says_so_and_keeps_what_is_finished() {
-    let folder = Folder::new("full");
+    let folder = folder("full");
     // A limit on the size of files stands in for a full disk: frames pass it, the film of all of them does not.
     let luxel = env!("CARGO_BIN_EXE_luxel");
     let script =
@@ -118,10 +119,10 @@ fn without_room_it_says_so_and_keeps_what_is_finished() {
         .output()
         .expect("a shell");
     expect(&output, 74, &["a.y4m", "frames are finished and stay"]);
-    let names = folder.names();
+    let whole = names(&folder);
     assert!(
-        !names.is_empty() && names.iter().all(|name| name.ends_with(".png")),
-        "{names:?}"
+        !whole.is_empty() && whole.iter().all(|name| name.ends_with(".png")),
+        "{whole:?}"
     );
     let small = format!(
         "trap '' XFSZ; ulimit -f 1; exec '{luxel}' animate spin.ron --spp 1 -o big_##.exr --aov normal,albedo"
@@ -132,19 +133,19 @@ fn without_room_it_says_so_and_keeps_what_is_finished() {
         .output()
         .expect("a shell");
     expect(&output, 74, &["big_00.exr", "0 of 12 frames"]);
-    assert_eq!(folder.names(), names, "nothing half written");
+    assert_eq!(names(&folder), whole, "nothing half written");
     folder.expect(
         &["animate", "spin.ron", "--spp", "1", "--y4m", "a.y4m"],
         0,
         &["of them are finished"],
     );
-    assert_eq!(folder.names().len(), 13);
+    assert_eq!(names(&folder).len(), 13);
 }
 
 #[cfg(target_os = "linux")]
 #[test]
 fn an_encoder_that_fails_ends_it() {
-    let folder = Folder::new("encoder");
+    let folder = folder("encoder");
     let full = fs::File::options()
         .write(true)
         .open("/dev/full")

@@ -1,7 +1,8 @@
 //! `--noise` from frame to frame: the error stays, the samples do not.
 
-use crate::folder::{Folder, text};
+use crate::folder::{files, folder};
 use crate::motion::spawn;
+use crate::support::text;
 use luxel::film::Film;
 use luxel::render::{Control, Ended, Renderer, Settings};
 use luxel::scene::RenderDesc;
@@ -80,18 +81,18 @@ fn frames_of_different_noise_are_equally_wrong() {
 
 #[test]
 fn finished_frames_of_the_same_error_are_kept() {
-    let folder = Folder::new("level");
+    let folder = folder("level");
     let line = [
         "animate", "spin.ron", "--noise", "10%", "--frames", "0..3", "--gif", "a.gif",
     ];
     let with = |more: &[&'static str]| [&line[..6], more].concat();
     folder.expect(&line, 0, &["ended by --noise 10 %", "spp, ", " on average"]);
-    let all = folder.files();
+    let all = files(&folder);
     std::fs::remove_file(folder.0.join("spin_0001.png")).expect("ours");
     std::fs::remove_file(folder.0.join("a.gif")).expect("ours");
     let again = folder.expect(&line, 0, &["3 frames: 0–2; 2 of them are finished"]);
     assert_eq!(text(&again.stdout), "spin_0001.png\na.gif\n");
-    assert_eq!(folder.files(), all);
+    assert_eq!(files(&folder), all);
     let alone = [
         "render",
         "spin.ron",
@@ -103,7 +104,7 @@ fn finished_frames_of_the_same_error_are_kept() {
         "alone.png",
     ];
     folder.expect(&alone, 0, &[]);
-    assert_eq!(folder.files()["alone.png"], all["spin_0002.png"]);
+    assert_eq!(files(&folder)["alone.png"], all["spin_0002.png"]);
 
     // Whatever would have made others is refused.
     folder.expect(

@@ -10,3 +10,5 @@ mod level;
 mod motion;
 mod noise;
 mod standing;
+#[path = "../support/folder.rs"]
+mod support;

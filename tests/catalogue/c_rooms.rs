@@ -1,5 +1,5 @@
 //! C1: closed rooms turned at random, in which no path may be lost: walls that meet at 109°, 90°, 71° and 45° along edges that
-//! are parallel to no axis. Other transforms are in `tests/world.rs`.
+//! are parallel to no axis. Other transforms are in `tests/world`.
 
 use crate::book::{Outcome, items};
 use crate::g_transport::{bare, camera, deviating, series};

@@ -22,7 +22,7 @@
 //! | B2 six walls | `g_transport` |
 //! | B7 touching, B9 as lights | `f_lights`, `light::radiance` |
 //! | C1 turned rooms | `c_rooms` |
-//! | C transforms | `tests/world.rs`, `kernels::leave`, `light::agreement` |
+//! | C transforms | `tests/world`, `kernels::leave`, `light::agreement` |
 //! | D trees: 1 corners, 2 zeros, 3 equality, 4 order, 6 bad rays, 7 work | `d_trees`; 1 also `trace::kernels::ray` |
 //! | D5 boxes contain what is in them (none are quantised) | `kernels::trees` |
 //! | E1 to E4 sampling | `trace::vector`, `trace::light`; by estimators: `light::estimators`, `light::agreement` |

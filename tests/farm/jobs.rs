@@ -2,7 +2,8 @@
 //! those do. In folders whose names a shell would take apart, and to the bits of a plain run. `prove.sh` beside this file
 //! does the same with the schedulers themselves.
 
-use crate::folder::{Folder, expect, text};
+use crate::folder::folder;
+use crate::support::{Folder, expect, text};
 use serde_json::Value;
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
@@ -44,7 +45,7 @@ exit "${failed:-0}"
 
 impl Farm {
     fn new(name: &str) -> Farm {
-        let folder = Folder::new(&format!("farm-{name}"));
+        let folder = folder(&format!("farm-{name}"));
         let scenes = folder.0.join(ODD);
         fs::create_dir(&scenes).expect("a folder");
         for file in ["spin.ron", "cube.obj"] {

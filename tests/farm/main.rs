@@ -6,4 +6,6 @@ mod folder;
 #[cfg(unix)]
 mod jobs;
 mod progress;
+#[path = "../support/folder.rs"]
+mod support;
 mod threads;

@@ -1,6 +1,7 @@
 //! What logs are told while luxel works.
 
-use crate::folder::{Folder, text};
+use crate::folder::folder;
+use crate::support::text;
 use serde_json::{Value, json};
 
 /// The lines of stderr that are JSON.
@@ -14,7 +15,7 @@ fn events(stderr: &[u8]) -> Vec<Value> {
 
 #[test]
 fn json_tells_every_frame_and_where_it_ends() {
-    let folder = Folder::new("json");
+    let folder = folder("json");
     let line = [
         "animate",
         "spin.ron",
@@ -42,7 +43,7 @@ fn json_tells_every_frame_and_where_it_ends() {
 
 #[test]
 fn a_still_is_told_like_a_frame() {
-    let folder = Folder::new("still");
+    let folder = folder("still");
     let line = ["render", "spin.ron", "--frame", "7", "--progress", "json"];
     let told = events(&folder.expect(&line, 0, &[]).stderr);
     let kinds: Vec<&Value> = told.iter().map(|event| &event["event"]).collect();
@@ -55,7 +56,7 @@ fn a_still_is_told_like_a_frame() {
 
 #[test]
 fn every_kind_of_log_has_its_lines_and_silence_none() {
-    let folder = Folder::new("kinds");
+    let folder = folder("kinds");
     for (how, wanted) in [
         ("plain", &["frame 0: 2 of 2 spp, 100 % of all"][..]),
         (
@@ -80,7 +81,7 @@ fn every_kind_of_log_has_its_lines_and_silence_none() {
 #[test]
 #[ignore = "waits twelve seconds: cargo test --release --test farm heartbeat -- --ignored"]
 fn a_heartbeat_comes_every_ten_seconds_and_knows_the_error() {
-    let folder = Folder::new("heartbeat");
+    let folder = folder("heartbeat");
     let line = ["render", "spin.ron", "--time", "12s", "--progress", "json"];
     let told = events(&folder.expect(&line, 0, &[]).stderr);
     let known = told.iter().filter(|event| event["rel_err"].is_number());

@@ -1,6 +1,7 @@
 //! How many threads a process takes.
 
-use crate::folder::{Folder, expect};
+use crate::folder::folder;
+use crate::support::{Folder, expect};
 use std::fs;
 
 /// What `--stats` says after a render under these variables.
@@ -23,7 +24,7 @@ fn threads(folder: &Folder, variables: &[(&str, &str)], more: &[&str]) -> u64 {
 
 #[test]
 fn the_command_line_is_obeyed_before_slurm_and_slurm_before_the_machine() {
-    let folder = Folder::new("allotment");
+    let folder = folder("allotment");
     let machine = std::thread::available_parallelism().expect("known").get() as u64;
     let task = ("SLURM_CPUS_PER_TASK", "3");
     let node = ("SLURM_CPUS_ON_NODE", "4");
