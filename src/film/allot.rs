@@ -12,7 +12,8 @@
 //! are halved like the fields of a chessboard, and what one half chooses, group and price, is judged by the other.
 
 use super::decay::Decay;
-use super::error::{Scale, Sums, decay_of, mean_of};
+use super::error::{Sums, decay_of, mean_of};
+use super::pixels::Scale;
 use super::{ErrorBar, Film};
 
 /// Groups of cells.

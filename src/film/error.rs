@@ -1,11 +1,12 @@
 //! Error bars: how far a film's radiance is from what infinitely many samples would give, told from its samples alone.
 //!
-//! The pixels' variances come from [`super::Blocks`], each pixel's own; how they go on falling beyond the longest blocks
-//! ([`super::decay`]) cannot be told from one pixel and is fitted to all together.
+//! The pixels' variances come from [`super::Blocks`], each pixel's own ([`super::pixels`]); how they go on falling beyond the
+//! longest blocks ([`super::decay`]) cannot be told from one pixel and is fitted to all together.
 //!
 //! Deliberately absent: errors that no sample shows: light that was never found, and that bounces end.
 
 use super::decay::Decay;
+use super::pixels::Scale;
 use super::{Blocks, Film};
 
 /// Groups of pixels for the jackknife.
@@ -24,13 +25,6 @@ const FEW: f64 = 2.0;
 
 /// Samples from which on that means something.
 const ENOUGH: u32 = 16;
-
-/// A standard error that is itself an estimate from d squares is widened by 1 + STUDENT / d, as much as the 95 % interval of
-/// Student's t is wider than the normal one: (z² + 1) / 4 with z = 1.96.
-const STUDENT: f64 = 1.21;
-
-/// Of a pixel and its eight neighbours, so many tell about it.
-const ALIKE: f64 = 3.0;
 
 /// Numbers of samples are sought in steps of 2⁻¹⁰ of them.
 const FINEST: u32 = 10;
@@ -120,7 +114,7 @@ impl Sums {
         }
     }
 
-    fn add(&mut self, other: &Sums, sign: f64) {
+    pub(super) fn add(&mut self, other: &Sums, sign: f64) {
         self.pixels += sign * other.pixels;
         self.square += sign * other.square;
         for (level, other) in self.levels.iter_mut().zip(&other.levels) {
@@ -130,11 +124,11 @@ impl Sums {
 }
 
 /// Pixels with equally many samples.
-struct Class {
+pub(super) struct Class {
     /// Samples of each.
-    n: u32,
+    pub(super) n: u32,
     /// Levels of [`Blocks`] that tell their error; none if samples are independent.
-    levels: Vec<u32>,
+    pub(super) levels: Vec<u32>,
     /// Their sums, group by group.
     groups: Vec<Sums>,
 }
@@ -148,9 +142,9 @@ impl Class {
 }
 
 /// The classes of a film, by rising samples, and that of every pixel.
-struct Classes {
-    classes: Vec<Class>,
-    of_pixel: Vec<u8>,
+pub(super) struct Classes {
+    pub(super) classes: Vec<Class>,
+    pub(super) of_pixel: Vec<u8>,
 }
 
 impl Film {
@@ -208,7 +202,7 @@ impl Film {
     }
 
     /// Sorts pixels by their samples, those that were left out included; `None` if one has fewer than two.
-    fn classes(&self) -> Option<Classes> {
+    pub(super) fn classes(&self) -> Option<Classes> {
         let planes = self.planes();
         if planes.rgb_squared.is_empty() {
             return None;
@@ -269,7 +263,7 @@ impl Film {
     }
 
     /// Variance of a sample, by the samples of a pixel; 0 below two.
-    fn scatter(&self, i: usize) -> [f64; 3] {
+    pub(super) fn scatter(&self, i: usize) -> [f64; 3] {
         let n = f64::from(self.planes().count[i]);
         std::array::from_fn(|c| {
             let sum = self.planes().rgb[i][c];
@@ -287,9 +281,10 @@ impl Film {
     fn shares(&self, scales: &[Scale], of_pixel: &[u8]) -> (f64, f64) {
         let (mut sum, mut square, mut fragile) = (0.0, 0.0, 0.0);
         for i in 0..self.pixels() {
-            let variance = mean_of(scales[usize::from(of_pixel[i])].variance(self, i));
+            let scale = &scales[usize::from(of_pixel[i])];
+            let variance = mean_of(scale.variance(self, i));
             sum += variance;
-            square += variance * variance;
+            square += scale.squared(variance);
             if self.count_of(i) >= ENOUGH && self.stands_on_few(i) {
                 fragile += variance;
             }
@@ -308,109 +303,6 @@ impl Film {
         let (sum, square) = (self.planes().rgb[i], self.planes().rgb_squared[i]);
         let (sum, square) = (mean_of(sum), mean_of(square));
         sum * sum < FEW * square
-    }
-
-    /// Standard errors of the pixels' means from what blocks of samples differ by; `None` if samples are independent.
-    ///
-    /// A pixel has few blocks: its neighbours' help, with a quarter of its own weight each. And how much a level tells of
-    /// the whole, pixels say together, each with the same weight, or the few with the largest errors would say it for all.
-    pub(super) fn block_errors(&self) -> Option<Vec<[f32; 3]>> {
-        let Classes { classes, of_pixel } = self.classes()?;
-        let mut sums: Vec<Sums> = classes
-            .iter()
-            .map(|class| Sums::zero(class.levels.len()))
-            .collect();
-        for (i, class) in of_pixel.iter().copied().map(usize::from).enumerate() {
-            let gains: Vec<f64> = classes[class]
-                .levels
-                .iter()
-                .map(|&k| mean_of(self.planes().gains[k as usize][i].map(f64::from)))
-                .collect();
-            let steps = gains
-                .iter()
-                .zip(0..)
-                .map(|(gain, k)| gain * f64::from(1u32 << k));
-            let whole: f64 = steps.sum();
-            if whole > 0.0 {
-                sums[class].pixels += 1.0;
-                for (sum, gain) in sums[class].levels.iter_mut().zip(gains) {
-                    *sum += gain / whole;
-                }
-            }
-        }
-        let mut scales = Vec::new();
-        for (class, sums) in classes.iter().zip(&mut sums) {
-            sums.pixels = sums.pixels.max(1.0);
-            let decay = match class.levels.is_empty() {
-                true => return None,
-                false => decay_of(&class.levels, sums)?,
-            };
-            scales.push(Scale::new(&decay, &class.levels, class.n));
-        }
-        let scale = |i: usize| &scales[usize::from(of_pixel[i])];
-        let variances: Vec<[f64; 3]> = (0..self.pixels())
-            .map(|i| scale(i).variance(self, i))
-            .collect();
-        let (width, height) = (self.width() as usize, self.height() as usize);
-        let smooth = |i: usize| {
-            let student = 1.0 + STUDENT / (ALIKE * scale(i).pairs);
-            let widening = student * student;
-            let (x, y) = (i % width, i / width);
-            let (mut sum, mut weights) = ([0.0; 3], 0.0);
-            for row in y.saturating_sub(1)..=(y + 1).min(height - 1) {
-                for column in x.saturating_sub(1)..=(x + 1).min(width - 1) {
-                    let weight = if (column, row) == (x, y) { 4.0 } else { 1.0 };
-                    weights += weight;
-                    for c in 0..3 {
-                        sum[c] += weight * variances[row * width + column][c];
-                    }
-                }
-            }
-            sum.map(|s| (widening * s / weights).sqrt() as f32)
-        };
-        Some((0..self.pixels()).map(smooth).collect())
-    }
-}
-
-/// From the differences of a pixel's blocks to the variance of its mean.
-pub(super) struct Scale {
-    /// (level, by what its mean squared half-difference is multiplied); none if samples are independent.
-    factors: Vec<(u32, f64)>,
-    /// Samples.
-    n: u32,
-    /// Pairs of blocks of one pixel, of all levels.
-    pairs: f64,
-}
-
-impl Scale {
-    /// Every level by itself, times its ratio in the whole image, estimates the variance; their pairs are their weights.
-    pub(super) fn new(decay: &Decay, levels: &[u32], n: u32) -> Scale {
-        let variance = decay.variance(n);
-        let pairs = |k: u32| f64::from(Blocks::pairs(n, k).max(1));
-        let all: f64 = levels.iter().map(|&k| pairs(k)).sum();
-        let factor = |&k: &u32| match decay.gain(k) {
-            gain if gain > 0.0 => (k, pairs(k) / all * variance / gain),
-            _ => (k, 0.0),
-        };
-        Scale {
-            factors: levels.iter().map(factor).collect(),
-            n,
-            pairs: all,
-        }
-    }
-
-    pub(super) fn variance(&self, film: &Film, i: usize) -> [f64; 3] {
-        if self.factors.is_empty() {
-            return film.scatter(i).map(|scatter| scatter / f64::from(self.n));
-        }
-        let mut variance = [0.0; 3];
-        for &(k, factor) in &self.factors {
-            let gain = film.planes().gains[k as usize][i];
-            for c in 0..3 {
-                variance[c] += factor * f64::from(gain[c]);
-            }
-        }
-        variance
     }
 }
 

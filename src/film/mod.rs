@@ -20,6 +20,7 @@ mod metadata;
 mod palette;
 pub mod part;
 mod patch;
+mod pixels;
 mod planes;
 mod png;
 mod resolve;
