@@ -61,13 +61,33 @@ fn errors_are_predicted() {
     }
 }
 
+/// At other numbers of samples too: few, between powers of two, and many.
+#[test]
+fn pixels_are_covered_at_other_numbers_of_samples() {
+    for name in ["lens", "cat_flat"] {
+        for spp in [16, 48, 128] {
+            let score = score(&Stage::shipped(name, 48), spp, 8);
+            assert!(
+                (score.mean - 1.0).abs() <= OFF,
+                "{name} {spp}: {}",
+                score.mean
+            );
+            assert!(
+                COVERED.contains(&score.pixels),
+                "{name} {spp}: {}",
+                score.pixels
+            );
+        }
+    }
+}
+
 /// Not one scene may be far off, and most must be within the bars.
 #[test]
-#[ignore = "long: five minutes; cargo test --release --test trade calibrated -- --ignored --nocapture"]
+#[ignore = "long: two minutes; cargo test --release --test trade calibrated -- --ignored --nocapture"]
 fn all_scenes_are_calibrated() {
     let (mut off, mut uncovered, mut covering, mut all) = (Vec::new(), Vec::new(), 0, 0);
     for stage in Stage::all_shipped(96) {
-        let score = score(&stage, 64, 8);
+        let score = score(&stage, 64, 16);
         if (score.mean - 1.0).abs() > OFF {
             off.push(stage.name.clone());
         }
