@@ -160,21 +160,30 @@ fn sample_chunk<L: BitLanes>(
 }
 
 /// Whether one of two lines in lanes reaches into a sphere.
+#[inline(always)]
 fn meets<L: BitLanes>(lines: &[[V3<L>; 2]; 2], lane: usize, [x, y, z, radius]: [f64; 4]) -> bool {
     let center = DVec3::new(x, y, z);
-    lines.iter().any(|ends| {
-        let [a, b] = ends.map(|V3(v)| {
-            let mut point = [[0.0; WIDEST]; 3];
-            for (array, x) in point.iter_mut().zip(v) {
-                x.store(array);
-            }
-            DVec3::from_array(point.map(|array| f64::from(array[lane])))
-        });
+    lines.iter().any(|[a, b]| {
+        let (a, b) = (point(a, lane), point(b, lane));
         let along = b - a;
         let t = (center - a).dot(along) / along.length_squared();
         let nearest = a + along * t.clamp(0.0, 1.0);
         (nearest - center).length() < radius
     })
+}
+
+/// A lane's point.
+#[inline(always)]
+fn point<L: BitLanes>(V3([x, y, z]): &V3<L>, lane: usize) -> DVec3 {
+    let mut point = [[0.0; WIDEST]; 3];
+    x.store(&mut point[0]);
+    y.store(&mut point[1]);
+    z.store(&mut point[2]);
+    DVec3::new(
+        f64::from(point[0][lane]),
+        f64::from(point[1][lane]),
+        f64::from(point[2][lane]),
+    )
 }
 
 /// Adds the light of the ways that nothing blocks; returns how many rays that took.
