@@ -194,8 +194,10 @@ fn less_error(account: &Account<'_>, settings: &Settings) -> Option<String> {
         .into_iter()
         .find(|goal| bar.relative > TOO_MUCH * goal)?;
     let uniform = f64::from(bar.samples_for(wanted, 1, RenderDesc::MAX_SPP));
-    let by_cell =
-        samples_of_cells(account, wanted).filter(|_| settings.adaptive && stats.spp >= ENOUGH);
+    let by_cell = match settings.adaptive && stats.spp >= ENOUGH {
+        true => samples_of_cells(account, wanted),
+        false => None,
+    };
     let samples = by_cell.unwrap_or(uniform);
     let times = samples / f64::from(stats.spp.max(1));
     let seconds = stats.stages.trace.as_secs_f64() * times;

@@ -19,6 +19,7 @@ mod dial_args;
 mod explain;
 mod failure;
 mod farm;
+mod finish;
 mod frame_list;
 mod frames;
 mod goal_args;

@@ -8,7 +8,7 @@ use super::progress::{Finished, Progress, Watcher, Work, words};
 use super::stats::{Account, lost};
 use super::tuned::Tuned;
 use super::versus::Versus;
-use super::{advice, diagnostics, interrupt, load, print_result, replay, say};
+use super::{advice, diagnostics, finish, interrupt, load, print_result, replay, say};
 use crate::film;
 use crate::render::{Canvas, Control, Rendering, Settings, Traced};
 use crate::scene::{RenderDesc, SceneDesc};
@@ -44,9 +44,10 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
         say("warning: with --nee off, lights without extent (`light: ..`) do not shine");
     }
     let mut settings = settings(args, &loaded.desc);
-    let time = settings
-        .time
-        .map(|time| time.saturating_sub(start.elapsed()));
+    let time = settings.time.map(|time| {
+        let after = finish::takes(settings.size, output.format, &args.dials.aov);
+        time.saturating_sub(start.elapsed() + after)
+    });
     settings.time = time;
     let mut versus = match &args.goal.vs {
         Some(reference) => Some(Versus::start(reference, &output, settings.size)?),
