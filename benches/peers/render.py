@@ -7,7 +7,7 @@ usage: python3 benches/peers/render.py [--scenes spheres,glass,mesh,terrain] [--
 Needs Python 3.9 with venv, a network the first time, an LLVM that Mitsuba finds (DRJIT_LIBLLVM_PATH names another), and
 `cargo build --release`. Makes an environment of its own under OUT with Mitsuba and OpenEXR in it, and writes there
   SCENE.ron, *.obj     what luxel renders; Mitsuba gets the same numbers
-  rows.json            one row per render: seconds of processor time, relMSE
+  rows.json            one row per render: seconds of processor time, relMSE; after every scene
   table.md, plot.svg   what the README shows
 
 Seconds are processor time: of luxel the whole process, start, load and build included; of Mitsuba the call of `render`
@@ -219,7 +219,7 @@ def measure(args, out):
                     rows.append({"scene": name, "peer": peer.name, "spp": spp, "seed": seed, "seconds": seconds,
                                  "load": peer.load, "relmse": error})
             say(f"{name}: {spp} samples done")
-    (out / "rows.json").write_text(json.dumps({"references": means, "rows": rows}, indent=1))
+        (out / "rows.json").write_text(json.dumps({"references": means, "rows": rows}, indent=1))
     return rows, means
 
 
